@@ -1,0 +1,107 @@
+//! From an integrand to an estimate of its integral.
+
+use crate::{Incomplete, Integrand, Value};
+
+/// Estimates the integral of an integrand over the unit cube.
+///
+/// Where the points come from and where the error bar comes from is the estimator's own matter; what is
+/// integrated is not. So every estimator takes every [`Integrand`].
+///
+/// # Writing your own
+///
+/// ```
+/// use estimand::{Estimate, Estimator, Integrand, Moments, Outcome, Value};
+/// use estimand::points::{Independent, PointSet};
+///
+/// /// The mean over `count` independent points and their mirror images.
+/// struct Mirrored { count: u64, seed: u64 }
+///
+/// /// The mirror image of what another sampler gives.
+/// struct Mirror<S>(S);
+///
+/// impl<S: estimand::Sampler> estimand::Sampler for Mirror<S> {
+///     fn next_1d(&mut self) -> f64 { 1.0 - f64::EPSILON / 2.0 - self.0.next_1d() }
+/// }
+///
+/// impl Estimator for Mirrored {
+///     fn estimate<I: Integrand>(&self, integrand: &I) -> Outcome<I::Value> {
+///         let points = Independent::new(self.seed);
+///         let mut moments = Moments::new();
+///         for index in 0..self.count {
+///             let here = integrand.evaluate(&mut points.point(index)).widen();
+///             let there = integrand.evaluate(&mut Mirror(points.point(index))).widen();
+///             moments.push(here.zip(there, |a, b| 0.5 * (a + b)));
+///         }
+///         let mut estimate = Estimate::new(moments.mean(), 2 * self.count);
+///         estimate.std_error = moments.std_error();
+///         Ok(estimate)
+///     }
+/// }
+///
+/// let linear = estimand::cube(|[x, y]| 3.0 * x - y);
+/// let estimate = Mirrored { count: 100, seed: 1 }.estimate(&linear)?;
+/// assert!((estimate.mean - 1.0).abs() < 1e-14);
+/// # Ok::<(), estimand::Error>(())
+/// ```
+pub trait Estimator {
+    /// The estimate of the integral of `integrand`.
+    ///
+    /// # Errors
+    ///
+    /// An [`Incomplete`] with the estimate so far: if the integrand returned a value that is not finite
+    /// (unless such values are to be [rejected](NonFinite::Reject)), or if the estimator cannot be run as it was
+    /// set up.
+    fn estimate<I: Integrand>(&self, integrand: &I) -> Outcome<I::Value>;
+}
+
+impl<E: Estimator> Estimator for &E {
+    fn estimate<I: Integrand>(&self, integrand: &I) -> Outcome<I::Value> {
+        (**self).estimate(integrand)
+    }
+}
+
+/// What an [`Estimator`] returns for integrands with values of type `V`: means and errors are `f64`s.
+pub type Outcome<V> = Result<Estimate<<V as Value>::Wide>, Incomplete<<V as Value>::Wide>>;
+
+/// What to do with a value of an integrand that is NaN or infinite.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NonFinite {
+    /// Stop with an error that names the point and carries the estimate so far.
+    #[default]
+    Fail,
+    /// Leave the value out, count it in [`Estimate::rejected`], and go on.
+    ///
+    /// The mean is then the mean over the part of the domain where the integrand is finite.
+    Reject,
+}
+
+/// An estimate of an integral.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+#[non_exhaustive]
+pub struct Estimate<V> {
+    /// The estimate of the integral.
+    pub mean: V,
+    /// The standard error of the mean, where the estimator has one to give.
+    pub std_error: Option<V>,
+    /// How many evaluations of the integrand were asked for.
+    pub requested: u64,
+    /// How many evaluations were made: another number than `requested` where the points come only in some
+    /// numbers, as those of a grid do. Rejected ones are among them.
+    pub used: u64,
+    /// How many of the values were not finite and left out.
+    pub rejected: u64,
+}
+
+impl<V> Estimate<V> {
+    /// An estimate without an error bar, from `evaluations` evaluations.
+    pub fn new(mean: V, evaluations: u64) -> Self {
+        Self {
+            mean,
+            std_error: None,
+            requested: evaluations,
+            used: evaluations,
+            rejected: 0,
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! The mean over the points of one set, without an error bar.
+
+use crate::evaluate::{conclude, evaluate};
+use crate::points::PointSet;
+use crate::{Error, Estimate, Estimator, Integrand, NonFinite, Outcome};
+
+/// The mean over the first points of one point set; no error bar.
+///
+/// A set on its own cannot tell how good it is: the spread of the values says nothing about the error
+/// of points that are not independent. [`Replicated`](crate::Replicated) gives an error bar.
+///
+/// A set that only has a meaning as a whole ([`PointSet::size`]) is used as a whole: the estimate then tells
+/// what was [requested](Estimate::requested) and what was [used](Estimate::used).
+///
+/// ```
+/// use estimand::{Average, Estimator, cube, points::Stratified};
+///
+/// let square = cube(|[x]| x * x);
+/// let estimate = Average::new(Stratified::new(1000, 1, 7)?, 1000).estimate(&square)?;
+/// assert!((estimate.mean - 1.0 / 3.0).abs() < 1e-4);
+/// assert_eq!(estimate.std_error, None);
+/// # Ok::<(), estimand::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+#[must_use]
+pub struct Average<P> {
+    points: P,
+    count: u64,
+    non_finite: NonFinite,
+}
+
+impl<P: PointSet> Average<P> {
+    /// The mean over the first `count` points of `points`, or over all if it is a finite set.
+    pub const fn new(points: P, count: u64) -> Self {
+        Self {
+            points,
+            count,
+            non_finite: NonFinite::Fail,
+        }
+    }
+
+    /// The same with another rule for values that are not finite.
+    pub const fn non_finite(mut self, rule: NonFinite) -> Self {
+        self.non_finite = rule;
+        self
+    }
+}
+
+impl<P: PointSet> Estimator for Average<P> {
+    fn estimate<I: Integrand>(&self, integrand: &I) -> Outcome<I::Value> {
+        if self.count == 0 {
+            return Err(Error::refused("count", "at least 1", 0).into());
+        }
+        let count = self.points.size().unwrap_or(self.count);
+        conclude(
+            evaluate(&[&self.points], count, integrand, self.non_finite),
+            |tallies| {
+                let [tally] = tallies else { return None };
+                (tally.moments.count() > 0).then(|| Estimate {
+                    mean: tally.moments.mean(),
+                    std_error: None,
+                    requested: self.count,
+                    used: tally.used(),
+                    rejected: tally.rejected,
+                })
+            },
+        )
+    }
+}

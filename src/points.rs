@@ -1,0 +1,136 @@
+//! Where the points come from: one set or adaptor of sets a file.
+//!
+//! # Writing your own
+//!
+//! Implement [`PointSet::coordinate`], and keep the laws that [`PointSet`] states; nothing else is needed.
+//! See the example there.
+
+use core::ops::Range;
+
+use crate::Cursor;
+
+mod independent;
+mod n_rooks;
+mod stratified;
+
+pub use independent::Independent;
+pub use n_rooks::NRooks;
+pub use stratified::Stratified;
+
+/// A sequence, or a finite set, of points of the unit cube.
+///
+/// A pure function of `(index, dimension)`: random access, no state. Replay, threads, decorrelated
+/// pixels and independent replicates are all another index or another seed.
+///
+/// # Laws
+///
+/// - Every coordinate is in `[0, 1)`, never `1.0`, for every index up to [`u64::MAX`] and every dimension.
+/// - The same arguments give the same coordinate.
+/// - [`fill`](Self::fill) writes what [`coordinate`](Self::coordinate) returns, to the bit.
+/// - Past [`size`](Self::size) and past [`dimensions`](Self::dimensions) coordinates are still in `[0, 1)`; what
+///   they are is documented by each set. The sets of this crate continue with independent coordinates
+///   past their last dimension, and with another randomisation past the size of a randomised set.
+///
+/// # Writing your own
+///
+/// ```
+/// use estimand::{Average, Estimator, cube, points::PointSet};
+///
+/// /// The multiples of the golden ratio, modulo 1.
+/// struct Golden;
+///
+/// impl PointSet for Golden {
+///     fn coordinate(&self, index: u64, dimension: u32) -> f64 {
+///         assert_eq!(dimension, 0, "the golden ratio makes one dimension");
+///         let word = index.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+///         estimand::hash::unit(word)
+///     }
+///     fn dimensions(&self) -> u32 { 1 }
+/// }
+///
+/// let estimate = Average::new(Golden, 1000).estimate(&cube(|[x]| x * x))?;
+/// assert!((estimate.mean - 1.0 / 3.0).abs() < 1e-3);
+/// # Ok::<(), estimand::Error>(())
+/// ```
+pub trait PointSet: Sync {
+    /// The coordinate `dimension` of the point `index`, in `[0, 1)`.
+    fn coordinate(&self, index: u64, dimension: u32) -> f64;
+
+    /// `Some(n)` if only all of the first `n` points together are what the set promises.
+    fn size(&self) -> Option<u64> {
+        None
+    }
+
+    /// In how many dimensions the set keeps its promise.
+    fn dimensions(&self) -> u32 {
+        u32::MAX
+    }
+
+    /// Writes the coordinates in `dimensions` of as many points, from `first` on, as fit into `out`: one point
+    /// after the other, `dimensions.len()` numbers each.
+    ///
+    /// # Panics
+    ///
+    /// If the length of `out` is no multiple of the number of dimensions, or if an index would pass
+    /// [`u64::MAX`].
+    fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+        for (index, row) in rows(first, &dimensions, out) {
+            for (dimension, coordinate) in dimensions.clone().zip(row) {
+                *coordinate = self.coordinate(index, dimension);
+            }
+        }
+    }
+
+    /// The point `index`, to be read coordinate by coordinate.
+    fn point(&self, index: u64) -> Cursor<'_, Self>
+    where
+        Self: Sized,
+    {
+        Cursor::new(self, index)
+    }
+}
+
+impl<P: PointSet + ?Sized> PointSet for &P {
+    #[inline]
+    fn coordinate(&self, index: u64, dimension: u32) -> f64 {
+        (**self).coordinate(index, dimension)
+    }
+
+    fn size(&self) -> Option<u64> {
+        (**self).size()
+    }
+
+    fn dimensions(&self) -> u32 {
+        (**self).dimensions()
+    }
+
+    fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+        (**self).fill(first, dimensions, out);
+    }
+}
+
+/// The rows of `out` that [`PointSet::fill`] writes, each with the index of its point.
+///
+/// # Panics
+///
+/// As [`PointSet::fill`] does.
+pub(crate) fn rows<'a>(
+    first: u64,
+    dimensions: &Range<u32>,
+    out: &'a mut [f64],
+) -> impl Iterator<Item = (u64, &'a mut [f64])> {
+    let width = dimensions.len();
+    assert!(
+        out.is_empty() || out.len().is_multiple_of(width),
+        "fill: room for {} coordinates, no whole number of points of {width}",
+        out.len()
+    );
+    let count = out.len().checked_div(width).unwrap_or(0) as u64;
+    assert!(
+        count == 0 || first.checked_add(count - 1).is_some(),
+        "fill: {count} points from index {first} on pass the last index"
+    );
+    (0..)
+        .zip(out.chunks_exact_mut(width.max(1)))
+        .map(move |(row, out)| (first + row, out))
+}

@@ -1,0 +1,125 @@
+//! One random point in every cell of a grid.
+
+use super::PointSet;
+use super::n_rooks::within;
+use crate::Error;
+use crate::hash::{hash, permute, unit};
+
+/// Stratified points, also called jittered: one uniform point in every cell of a regular grid.[^cook]
+///
+/// The grid has `dimensions` axes, whose numbers of cells differ by at most one; of all such grids it is the one
+/// whose number of cells is nearest to what was asked for, and the smaller of two. [`size`](PointSet::size) tells what
+/// it is. Dimensions past the grid's are filled with further grids of the same shape, each with its points in an
+/// order of its own: so a path that reads coordinates in pairs has every pair stratified.
+///
+/// In `d` dimensions the error of a smooth integrand falls as `count^(-1/2 - 1/d)`: much in one or two, next to nothing
+/// in ten. The variance is never above that of independent points.
+///
+/// An index at or past the size belongs to another, independent set.
+///
+/// ```
+/// use estimand::points::{PointSet, Stratified};
+///
+/// let grid = Stratified::new(1000, 2, 1)?;
+/// assert_eq!(grid.size(), Some(31 * 32));
+/// # Ok::<(), estimand::Error>(())
+/// ```
+///
+/// [^cook]: Cook, Robert (1986). *Stochastic Sampling in Computer Graphics*. <https://doi.org/10.1145/7529.8927>
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub struct Stratified {
+    /// Cells along the short axes.
+    cells: u64,
+    /// How many axes, the first ones, have one cell more.
+    longer: u32,
+    dimensions: u32,
+    count: u64,
+    seed: u64,
+}
+
+impl Stratified {
+    /// The grid in `dimensions` dimensions with about `count` cells, with the points that `seed` selects.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for no points or no dimensions.
+    pub fn new(count: u64, dimensions: u32, seed: u64) -> Result<Self, Error> {
+        if count == 0 {
+            return Err(Error::refused(
+                "count of stratified points",
+                "at least 1",
+                count,
+            ));
+        }
+        if dimensions == 0 {
+            return Err(Error::refused(
+                "number of stratified dimensions",
+                "at least 1",
+                dimensions,
+            ));
+        }
+        // The largest cube of cells that is no larger than what was asked for.
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "a root of a u64; mended below"
+        )]
+        let mut cells = (count as f64).powf(1.0 / f64::from(dimensions)).round() as u64;
+        while cells > 1 && product(cells, 0, dimensions).is_none_or(|product| product > count) {
+            cells -= 1;
+        }
+        while product(cells, dimensions, dimensions).is_some_and(|product| product <= count) {
+            cells += 1;
+        }
+        let (count, longer) = (0..=dimensions.min(64))
+            .filter_map(|longer| Some((product(cells, longer, dimensions)?, longer)))
+            .min_by_key(|&(product, _)| (product.abs_diff(count), product))
+            .expect("the cube itself is among them");
+        Ok(Self {
+            cells,
+            longer,
+            dimensions,
+            count,
+            seed,
+        })
+    }
+
+    /// How many cells the grid has along the axis `dimension`.
+    pub fn cells(&self, dimension: u32) -> u64 {
+        self.cells + u64::from(dimension % self.dimensions < self.longer)
+    }
+}
+
+/// Cells of a grid with `cells + 1` along `longer` axes and `cells` along the others.
+fn product(cells: u64, longer: u32, dimensions: u32) -> Option<u64> {
+    cells
+        .checked_pow(dimensions - longer)?
+        .checked_mul((cells + 1).checked_pow(longer)?)
+}
+
+impl PointSet for Stratified {
+    #[inline]
+    fn coordinate(&self, index: u64, dimension: u32) -> f64 {
+        let (set, index) = (index / self.count, index % self.count);
+        let (grid, axis) = (dimension / self.dimensions, dimension % self.dimensions);
+        let key = hash(self.seed, set);
+        let cell = if grid == 0 {
+            index
+        } else {
+            permute(index, self.count, hash(key, u64::from(grid)))
+        };
+        // The cells are numbered with the first axis running fastest.
+        let longer = axis.min(self.longer);
+        let stride = (self.cells + 1).pow(longer) * self.cells.pow(axis - longer);
+        let cells = self.cells(axis);
+        within(
+            cell / stride % cells,
+            cells,
+            unit(hash(hash(!key, u64::from(dimension)), index)),
+        )
+    }
+
+    fn size(&self) -> Option<u64> {
+        Some(self.count)
+    }
+}

@@ -1,0 +1,89 @@
+//! The only parallel loop: jobs are fixed by the count alone and their results taken in the order of
+//! their indices, so that neither the number of threads nor the feature `parallel` changes a bit.
+
+/// Jobs whose results are held at once: enough to keep any machine busy, few enough to bound the memory.
+const WAVE: u64 = 1024;
+
+/// Runs `job` for `0..count` and hands the results to `take` in the order of their indices.
+///
+/// Stops at the first `Err` that `take` returns; jobs past it may have run, their results are dropped.
+pub(crate) fn in_order<T: Send, E>(
+    count: u64,
+    job: impl Fn(u64) -> T + Sync,
+    mut take: impl FnMut(T) -> Result<(), E>,
+) -> Result<(), E> {
+    if count == 1 {
+        return take(job(0));
+    }
+    let mut first = 0;
+    while first < count {
+        let last = count.min(first.saturating_add(WAVE));
+        wave(first..last, &job)
+            .into_iter()
+            .try_for_each(&mut take)?;
+        first = last;
+    }
+    Ok(())
+}
+
+/// The values of `job` at `0..count`, in order: many estimates side by side, as the pixels of an image
+/// are. Runs on all threads of rayon's current pool with the feature `parallel`, with the same result
+/// as without.
+///
+/// ```
+/// use estimand::{Estimator, MonteCarlo, cube, each};
+///
+/// let means: Vec<f64> = each(4, |k| {
+///     let power = cube(move |[x]| x.powi(k as i32));
+///     MonteCarlo::new(10_000, k).estimate(&power).unwrap().mean
+/// });
+/// assert!((means[3] - 0.25).abs() < 0.02);
+/// ```
+///
+/// # Panics
+///
+/// If `count` values do not fit into memory.
+pub fn each<T: Send>(count: u64, job: impl Fn(u64) -> T + Sync) -> Vec<T> {
+    wave(0..count, &job)
+}
+
+#[cfg(feature = "parallel")]
+fn wave<T: Send>(jobs: core::ops::Range<u64>, job: &(impl Fn(u64) -> T + Sync)) -> Vec<T> {
+    use rayon::iter::{IntoParallelIterator, ParallelIterator};
+    // rayon's range of u64 has no exact length, and collects in order all the same.
+    jobs.into_par_iter().map(job).collect()
+}
+
+#[cfg(not(feature = "parallel"))]
+fn wave<T: Send>(jobs: core::ops::Range<u64>, job: &(impl Fn(u64) -> T + Sync)) -> Vec<T> {
+    jobs.map(job).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_arrive_in_order_and_stop_at_the_first_error() {
+        let mut seen = Vec::new();
+        let stopped = in_order(
+            5000,
+            |index| index,
+            |index| {
+                if index == 3000 {
+                    return Err(index);
+                }
+                seen.push(index);
+                Ok(())
+            },
+        );
+        assert_eq!(stopped, Err(3000));
+        assert!(seen.into_iter().eq(0..3000));
+    }
+
+    #[test]
+    fn nothing_to_do_is_done() {
+        assert_eq!(in_order(0, |_| (), |()| Err(())), Ok(()));
+        assert!(each(0, |index| index).is_empty());
+    }
+}

@@ -12,6 +12,8 @@ mod value;
 pub mod estimators;
 pub mod hash;
 pub mod integrands;
+#[cfg(feature = "path")]
+pub mod path;
 pub mod points;
 
 pub use error::{Error, Incomplete};

@@ -103,6 +103,7 @@ mod reduce;
 mod sampler;
 mod value;
 
+pub mod discrepancy;
 pub mod estimators;
 pub mod hash;
 pub mod integrands;

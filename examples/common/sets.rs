@@ -11,7 +11,7 @@ use estimand::points::{
 
 /// The sets that a program can be told to use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Set {
+pub(crate) enum Set {
     Independent,
     Stratified,
     NRooks,
@@ -23,7 +23,7 @@ pub enum Set {
 
 /// How a set is randomised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Scramble {
+pub(crate) enum Scramble {
     /// Not at all, where the set is not random of itself
     None,
     /// A random shift modulo 1, for any set
@@ -61,13 +61,13 @@ impl fmt::Display for Scramble {
 
 /// What selects one set: its name is the program's own affair.
 #[derive(Args, Clone, Copy, Debug)]
-pub struct Choice {
+pub(crate) struct Choice {
     /// How the points are randomised
     #[arg(long, value_enum, default_value_t = Scramble::None)]
-    pub scramble: Scramble,
+    pub(crate) scramble: Scramble,
     /// What selects the randomisation, and the points of sets that are random of themselves
     #[arg(long, default_value_t = 1)]
-    pub seed: u64,
+    pub(crate) seed: u64,
 }
 
 impl Choice {
@@ -78,7 +78,12 @@ impl Choice {
     /// # Errors
     ///
     /// What the set refuses; a scramble that is not made for the set.
-    pub fn build(self, set: Set, dimensions: u32, count: u64) -> Result<Box<dyn PointSet>, Error> {
+    pub(crate) fn build(
+        self,
+        set: Set,
+        dimensions: u32,
+        count: u64,
+    ) -> Result<Box<dyn PointSet>, Error> {
         let Self { scramble, seed } = self;
         match set {
             Set::Independent => self.shiftable(set, Independent::new(seed)),

@@ -178,16 +178,20 @@ mod tests {
     }
 
     #[test]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the numbers of strata are small"
+    )]
     fn scrambles_keep_the_strata_of_one_dimension() {
         fn check(points: &impl PointSet) {
             for (dimension, base) in (0..12).zip(primes(12)) {
                 for strata in [base, base * base] {
-                    let mut seen: Vec<u32> = (0..strata)
+                    let mut seen: Vec<u64> = (0..strata)
                         .map(|index| points.coordinate(index.into(), dimension))
-                        .map(|u| (u * f64::from(strata)) as u32)
+                        .map(|u| (u * f64::from(strata)).floor() as u64)
                         .collect();
                     seen.sort_unstable();
-                    assert!(seen.into_iter().eq(0..strata), "{base}");
+                    assert!(seen.into_iter().eq(0..u64::from(strata)), "{base}");
                 }
             }
         }

@@ -203,8 +203,11 @@ mod tests {
         fn check(points: &impl PointSet) {
             for dimension in 0..8 {
                 let mut strata: Vec<u64> = (0..256)
-                    .map(|index| (points.coordinate(index, dimension) * 256.0).to_bits())
-                    .map(|bits| f64::from_bits(bits).floor().to_bits())
+                    .map(|index| {
+                        (points.coordinate(index, dimension) * 256.0)
+                            .floor()
+                            .to_bits()
+                    })
                     .collect();
                 strata.sort_unstable();
                 strata.dedup();

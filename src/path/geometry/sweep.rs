@@ -78,6 +78,13 @@ impl Flats {
     }
 }
 
+/// The place, in the order of the flat shapes, of a lane of a block.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "a few blocks")]
+fn slot(block: f32, lane: usize) -> usize {
+    block as usize * LANES + lane
+}
+
 impl Sweep {
     pub(super) fn new(shapes: &[Primitive]) -> Self {
         let (mut flats, mut flat_shapes, mut spheres) = (Vec::new(), Vec::new(), Vec::new());
@@ -137,8 +144,10 @@ impl Sweep {
     fn nearest_flat(&self, ray: &Ray) -> Option<Found> {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
         let mut nearest = [f32::INFINITY; LANES];
-        let mut blocks = [0_u32; LANES];
-        for (block, flats) in (0..).zip(&self.flats) {
+        // The block of each, as a number of the same width and kind: so both are selected alike.
+        let mut blocks = [0.0_f32; LANES];
+        let mut block = 0.0;
+        for flats in &self.flats {
             let distances = flats.distances(origin, direction, f32::INFINITY);
             for lane in 0..LANES {
                 let nearer = distances[lane] < nearest[lane];
@@ -149,6 +158,7 @@ impl Sweep {
                 };
                 blocks[lane] = if nearer { block } else { blocks[lane] };
             }
+            block += 1.0;
         }
         let distance = nearest
             .iter()
@@ -158,7 +168,7 @@ impl Sweep {
         }
         (0..LANES)
             .filter(|&lane| nearest[lane] == distance)
-            .map(|lane| blocks[lane] as usize * LANES + lane)
+            .map(|lane| slot(blocks[lane], lane))
             .min()
             .map(|slot| Found {
                 shape: self.flat_shapes[slot],

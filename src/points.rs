@@ -9,25 +9,42 @@ use core::ops::Range;
 
 use crate::Cursor;
 
+mod blue_noise;
 mod digits;
+mod faure;
 mod folded;
 mod halton;
 mod hammersley;
 mod independent;
+mod kronecker;
+mod lattice;
+mod multi_jittered;
 mod n_rooks;
+mod orthogonal_array;
+mod padded;
+pub mod pixel;
 mod radical_inverse;
+mod rescrambled;
 mod scramble;
 mod shifted;
 mod sobol;
 mod stratified;
 mod van_der_corput;
 
+pub use blue_noise::{BlueNoise, BlueNoisePixel};
+pub use faure::Faure;
 pub use folded::Folded;
 pub use halton::Halton;
 pub use hammersley::Hammersley;
 pub use independent::Independent;
+pub use kronecker::Kronecker;
+pub use lattice::{Lattice, LatticeSequence};
+pub use multi_jittered::MultiJittered;
 pub use n_rooks::NRooks;
+pub use orthogonal_array::OrthogonalArray;
+pub use padded::Padded;
 pub use radical_inverse::radical_inverse;
+pub use rescrambled::Rescrambled;
 pub use scramble::{
     BinaryScramble, Columns, DigitPermutation, DigitScramble, DigitalShift, HashedOwen,
     LinearMatrix, Owen, Plain,

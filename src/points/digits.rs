@@ -24,39 +24,82 @@ impl Base {
         Self {
             base,
             leading,
-
             inverse: 1.0 / power,
         }
     }
 
+    pub(super) fn base(&self) -> u32 {
+        self.base
+    }
+
     /// The scrambled radical inverse of `index`.
-    ///
-    /// The first digits make an integer below `power`, the others a fraction: their sum, divided by the
-    /// power. Four roundings, so that the value is within 2^-51 of the exact one, relatively;
-    /// where they would add up to 1.0, the number below is taken. The split is by place, not by how many
-    /// digits an index has, so that blocks of points can share their fraction.
     #[inline]
     pub(super) fn inverse<S: DigitScramble>(&self, scramble: &S, key: u64, index: u64) -> f64 {
-        let mut digits = Digits::new(self.base, scramble, key);
-        let mut rest = index;
+        self.fraction(scramble, key, Places::new(self.base, index))
+    }
+
+    /// The number in `[0, 1)` with the scrambled `digits` after the radix point.
+    ///
+    /// The first digits make an integer below a power of the base, the others a fraction: their sum, divided by the
+    /// power. Four roundings, so that the value is within 2^-51 of the exact one, relatively;
+    /// where they would add up to 1.0, the number below is taken. The split is by place, not by how many
+    /// digits there are, so that blocks of points can share their fraction.
+    #[inline]
+    pub(super) fn fraction<S: DigitScramble>(
+        &self,
+        scramble: &S,
+        key: u64,
+        mut digits: impl Iterator<Item = u64>,
+    ) -> f64 {
+        let base = u64::from(self.base);
+        let mut scrambled = Scrambled::new(self.base, scramble, key);
         for _ in 0..self.leading {
-            digits.push(rest % u64::from(self.base));
-            rest /= u64::from(self.base);
+            scrambled.push(digits.next().unwrap_or(0));
         }
-        let first = core::mem::take(&mut digits.mirrored);
+        let first = core::mem::take(&mut scrambled.mirrored);
         let mut denominator = 1;
-        while rest != 0 && denominator < FINEST / u64::from(self.base) {
-            digits.push(rest % u64::from(self.base));
-            rest /= u64::from(self.base);
-            denominator *= u64::from(self.base);
+        while denominator < FINEST / base
+            && let Some(digit) = digits.next()
+        {
+            scrambled.push(digit);
+            denominator *= base;
         }
-        let fraction = (digits.mirrored as f64 + digits.tail()) / denominator as f64;
+        let fraction = (scrambled.mirrored as f64 + scrambled.tail()) / denominator as f64;
         ((first as f64 + fraction) * self.inverse).min(BELOW_ONE)
     }
 }
 
+/// The digits of an index, lowest first, down to the last that is not 0.
+struct Places {
+    base: u64,
+    rest: u64,
+}
+
+impl Places {
+    #[inline]
+    fn new(base: u32, index: u64) -> Self {
+        Self {
+            base: base.into(),
+            rest: index,
+        }
+    }
+}
+
+impl Iterator for Places {
+    type Item = u64;
+
+    #[inline]
+    fn next(&mut self) -> Option<u64> {
+        (self.rest != 0).then(|| {
+            let digit = self.rest % self.base;
+            self.rest /= self.base;
+            digit
+        })
+    }
+}
+
 /// Digits that are being scrambled, from the first place on.
-struct Digits<'a, S> {
+struct Scrambled<'a, S> {
     base: u32,
     scramble: &'a S,
     key: u64,
@@ -67,7 +110,7 @@ struct Digits<'a, S> {
     mirrored: u64,
 }
 
-impl<'a, S: DigitScramble> Digits<'a, S> {
+impl<'a, S: DigitScramble> Scrambled<'a, S> {
     #[inline]
     fn new(base: u32, scramble: &'a S, key: u64) -> Self {
         Self {

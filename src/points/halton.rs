@@ -113,25 +113,30 @@ impl<S: DigitScramble> PointSet for Halton<S> {
 }
 
 /// The first `count` prime numbers.
-pub(super) fn primes(count: u32) -> Vec<u32> {
+fn primes(count: u32) -> Vec<u32> {
     // The n-th prime is below n (ln n + ln ln n) for n > 5 (Rosser and Schoenfeld 1962).
     let n = f64::from(count.max(6));
-    #[expect(clippy::cast_possible_truncation, reason = "the count is small")]
-    let limit = (n * (n.ln() + n.ln().ln())) as usize + 1;
-    let mut composite = vec![false; limit + 1];
-    let mut primes = Vec::new();
-    for (number, candidate) in (2_u32..).zip(2..=limit) {
-        if primes.len() == count as usize {
-            break;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a positive number below 2^20"
+    )]
+    let limit = (n * (n.ln() + n.ln().ln())) as u32 + 1;
+    primes_up_to(limit).take(count as usize).collect()
+}
+
+/// The prime numbers up to `limit`, in order, by the sieve of Eratosthenes.
+pub(super) fn primes_up_to(limit: u32) -> impl Iterator<Item = u32> {
+    let length = limit as usize + 1;
+    let mut composite = vec![false; length];
+    (2..=limit).zip(2..).filter_map(move |(number, place)| {
+        if composite[place] {
+            return None;
         }
-        if !composite[candidate] {
-            primes.push(number);
-            for multiple in (candidate * candidate..=limit).step_by(candidate) {
-                composite[multiple] = true;
-            }
-        }
-    }
-    primes
+        let multiples = (place * place..length).step_by(place);
+        multiples.for_each(|multiple| composite[multiple] = true);
+        Some(number)
+    })
 }
 
 #[cfg(test)]

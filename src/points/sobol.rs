@@ -122,7 +122,7 @@ impl<S> Sobol<S> {
 impl<S: BinaryScramble> Sobol<S> {
     /// The digits of a coordinate before they are scrambled.
     #[inline]
-    fn digits(&self, index: u64, dimension: u32) -> u64 {
+    pub(super) fn digits(&self, index: u64, dimension: u32) -> u64 {
         let mut digits = 0;
         let mut rest = index;
         while rest != 0 {

@@ -3,7 +3,7 @@
 //! Each method makes 16 independent randomisations; the error bar is the spread of their means, and the
 //! exact value tells whether it spoke the truth.
 
-use estimand::points::{Independent, NRooks, PointSet, Stratified};
+use estimand::points::{Independent, NRooks, Owen, PointSet, Sobol, Stratified};
 use estimand::{Error, Estimator, Replicated, cube};
 
 const REPLICATES: u64 = 16;
@@ -21,7 +21,9 @@ fn main() -> Result<(), Error> {
     })?;
     row("stratified", |seed| {
         Stratified::new(COUNT, 2, seed).expect("a positive count")
-    })
+    })?;
+    let sobol = Sobol::new(2)?;
+    row("sobol", |seed| sobol.clone().scrambled(Owen { seed }))
 }
 
 /// Prints one method's estimate beside the truth.

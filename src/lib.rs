@@ -107,6 +107,8 @@ pub mod discrepancy;
 pub mod estimators;
 pub mod hash;
 pub mod integrands;
+#[cfg(feature = "path")]
+pub mod path;
 pub mod points;
 
 pub use error::{Error, Incomplete};

@@ -7,7 +7,10 @@
 //! are fixed.
 
 use estimand::integrands::Roulette;
-use estimand::points::{Independent, NRooks, PointSet, Stratified};
+use estimand::points::{
+    DigitPermutation, DigitalShift, Folded, Halton, Hammersley, HashedOwen, Independent,
+    LinearMatrix, NRooks, Owen, PointSet, Shifted, Sobol, Stratified,
+};
 use estimand::{Average, Estimator, Integrand, Moments, MonteCarlo, Replicated, Sampler};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -167,6 +170,14 @@ macro_rules! point_sets {
     )+};
 }
 
+fn halton() -> Halton {
+    Halton::new(3).expect("three dimensions")
+}
+
+fn sobol() -> Sobol {
+    Sobol::new(3).expect("three dimensions")
+}
+
 fn config(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,
@@ -188,6 +199,15 @@ proptest! {
             "stratified": |seed, count| Stratified::new(count, 3, seed).expect("valid"),
             "stratified pairs": |seed, count| Stratified::new(count, 2, seed).expect("valid"),
             "n-rooks": |seed, count| NRooks::new(count, seed).expect("valid"),
+            "halton, digit permutation": |seed, _count| halton().scrambled(DigitPermutation { seed }),
+            "halton, digital shift": |seed, _count| halton().scrambled(DigitalShift { seed }),
+            "halton, owen": |seed, _count| halton().scrambled(Owen { seed }),
+            "hammersley, shifted": |seed, count| Shifted::new(Hammersley::new(count, 3).expect("valid"), seed),
+            "sobol, digital shift": |seed, _count| sobol().scrambled(DigitalShift { seed }),
+            "sobol, linear matrix": |seed, _count| sobol().scrambled(LinearMatrix { seed }),
+            "sobol, owen": |seed, _count| sobol().scrambled(Owen { seed }),
+            "sobol, hashed owen": |seed, _count| sobol().scrambled(HashedOwen { seed }),
+            "sobol, folded": |seed, _count| Folded::new(Shifted::new(sobol(), seed)),
         }
     }
 

@@ -9,13 +9,33 @@ use core::ops::Range;
 
 use crate::Cursor;
 
+mod digits;
+mod folded;
+mod halton;
+mod hammersley;
 mod independent;
 mod n_rooks;
+mod radical_inverse;
+mod scramble;
+mod shifted;
+mod sobol;
 mod stratified;
+mod van_der_corput;
 
+pub use folded::Folded;
+pub use halton::Halton;
+pub use hammersley::Hammersley;
 pub use independent::Independent;
 pub use n_rooks::NRooks;
+pub use radical_inverse::radical_inverse;
+pub use scramble::{
+    BinaryScramble, Columns, DigitPermutation, DigitScramble, DigitalShift, HashedOwen,
+    LinearMatrix, Owen, Plain,
+};
+pub use shifted::Shifted;
+pub use sobol::{DIMENSIONS as SOBOL_DIMENSIONS, Sobol};
 pub use stratified::Stratified;
+pub use van_der_corput::VanDerCorput;
 
 /// A sequence, or a finite set, of points of the unit cube.
 ///
@@ -90,24 +110,31 @@ pub trait PointSet: Sync {
     }
 }
 
-impl<P: PointSet + ?Sized> PointSet for &P {
-    #[inline]
-    fn coordinate(&self, index: u64, dimension: u32) -> f64 {
-        (**self).coordinate(index, dimension)
-    }
+/// A pointer to a set is that set.
+macro_rules! pointer {
+    ($($pointer:ty),*) => {$(
+        impl<P: PointSet + ?Sized> PointSet for $pointer {
+            #[inline]
+            fn coordinate(&self, index: u64, dimension: u32) -> f64 {
+                (**self).coordinate(index, dimension)
+            }
 
-    fn size(&self) -> Option<u64> {
-        (**self).size()
-    }
+            fn size(&self) -> Option<u64> {
+                (**self).size()
+            }
 
-    fn dimensions(&self) -> u32 {
-        (**self).dimensions()
-    }
+            fn dimensions(&self) -> u32 {
+                (**self).dimensions()
+            }
 
-    fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
-        (**self).fill(first, dimensions, out);
-    }
+            fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+                (**self).fill(first, dimensions, out);
+            }
+        }
+    )*};
 }
+
+pointer!(&P, Box<P>);
 
 /// The rows of `out` that [`PointSet::fill`] writes, each with the index of its point.
 ///

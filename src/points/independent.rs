@@ -28,6 +28,13 @@ impl Independent {
     pub const fn new(seed: u64) -> Self {
         Self { seed }
     }
+
+    /// What a set that `seed` randomises continues with past its last dimension.
+    #[inline]
+    pub(super) const fn past(seed: u64) -> Self {
+        // "past" in ASCII, so that the coordinates differ from those of a set made with the seed itself.
+        Self::new(hash(seed, 0x7061_7374))
+    }
 }
 
 impl PointSet for Independent {

@@ -1,0 +1,276 @@
+//! Discrepancies against published values, closed forms and exhaustive search.
+
+use estimand::discrepancy::{Boundary, L2, LocalCurve, Points, StarDiscrepancy, local, star};
+use proptest::prelude::*;
+
+/// The radical inverse as the quotient of two whole numbers: right to the last bit.
+fn radical_inverse(base: u64, mut index: u64) -> f64 {
+    let (mut numerator, mut denominator) = (0, 1);
+    while index > 0 {
+        numerator = numerator * base + index % base;
+        denominator *= base;
+        index /= base;
+    }
+    numerator as f64 / denominator as f64
+}
+
+/// Halton's points in the first prime bases, from index 0 on.
+fn halton(count: u64, dimensions: usize) -> Vec<f64> {
+    let bases = &[2, 3, 5, 7, 11, 13, 17][..dimensions];
+    (0..count)
+        .flat_map(|i| bases.iter().map(move |&base| radical_inverse(base, i)))
+        .collect()
+}
+
+/// The points (i / n, radical inverse of i in base 2), from index 0 on.
+fn hammersley(count: u64) -> Vec<f64> {
+    (0..count)
+        .flat_map(|i| [i as f64 / count as f64, radical_inverse(2, i)])
+        .collect()
+}
+
+/// Sobol's first two dimensions: the radical inverse, and Pascal's triangle modulo 2.
+fn sobol(count: u64) -> Vec<f64> {
+    let second = |index: u64| {
+        let mut column = 1_u64 << 63;
+        let mut word = 0;
+        for bit in 0..64 {
+            if index >> bit & 1 == 1 {
+                word ^= column;
+            }
+            column ^= column >> 1;
+        }
+        (word >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..count)
+        .flat_map(|i| [radical_inverse(2, i), second(i)])
+        .collect()
+}
+
+fn exact(rows: &[f64], dimensions: usize) -> f64 {
+    let points = Points::from_rows(rows, dimensions).unwrap();
+    let StarDiscrepancy::Exact { value, attained } = star(&points).unwrap() else {
+        panic!("no exact value");
+    };
+    // The box shows the value.
+    let share = attained.inside as f64 / points.count() as f64;
+    let shown = match attained.boundary {
+        Boundary::Open => attained.volume() - share,
+        Boundary::Closed => share - attained.volume(),
+    };
+    assert!((shown - value).abs() < 1e-15);
+    value
+}
+
+/// The maximum over all open and closed boxes with corners on the grid of the coordinates and 1.
+fn exhaustive(rows: &[f64], dimensions: usize) -> f64 {
+    let count = rows.len() / dimensions;
+    let axes: Vec<Vec<f64>> = (0..dimensions)
+        .map(|k| {
+            let mut axis: Vec<f64> = rows.iter().skip(k).step_by(dimensions).copied().collect();
+            axis.push(1.0);
+            axis
+        })
+        .collect();
+    let mut place = vec![0; dimensions];
+    let mut largest = 0.0_f64;
+    loop {
+        let corner: Vec<f64> = place.iter().zip(&axes).map(|(&i, axis)| axis[i]).collect();
+        let volume: f64 = corner.iter().product();
+        let inside = |below: fn(&f64, &f64) -> bool| {
+            rows.chunks_exact(dimensions)
+                .filter(|row| row.iter().zip(&corner).all(|(x, y)| below(x, y)))
+                .count() as f64
+                / count as f64
+        };
+        largest = largest
+            .max(volume - inside(|x, y| x < y))
+            .max(inside(|x, y| x <= y) - volume);
+        let Some(next) = (0..dimensions).find(|&k| place[k] < count) else {
+            return largest;
+        };
+        place[next] += 1;
+        place[..next].fill(0);
+    }
+}
+
+/// Asserts that two numbers agree to `digits` decimals, as a table prints them.
+#[track_caller]
+fn assert_prints(value: f64, printed: &str) {
+    let decimals = printed
+        .split_once('.')
+        .map_or(0, |(_, decimals)| decimals.len());
+    assert_eq!(format!("{value:.decimals$}"), printed, "{value}");
+}
+
+// Values of the star discrepancy below: exact rational arithmetic over all open and closed boxes, by a program
+// that is independent of this crate.
+
+#[test]
+fn star_discrepancy_of_van_der_corput() {
+    let table = [(3, "0.500000000"), (5, "0.350000000"), (8, "0.125000000")];
+    let table = table
+        .into_iter()
+        .chain([(10, "0.175000000"), (16, "0.062500000")]);
+    for (count, printed) in table.chain([(100, "0.023125000")]) {
+        assert_prints(exact(&halton(count, 1), 1), printed);
+    }
+    for m in 0..16 {
+        assert_eq!(exact(&halton(1 << m, 1), 1), 0.5_f64.powi(m));
+    }
+}
+
+#[test]
+fn star_discrepancy_of_halton_in_the_plane() {
+    for (count, printed) in [
+        (4, "0.500000000"),
+        (8, "0.319444444"),
+        (10, "0.266666667"),
+        (16, "0.201388889"),
+        (32, "0.104166667"),
+        (50, "0.086736111"),
+        (64, "0.052083333"),
+        (100, "0.050239198"),
+        (128, "0.036651235"),
+        (256, "0.018759645"),
+    ] {
+        assert_prints(exact(&halton(count, 2), 2), printed);
+    }
+    // Thiemard's bounds for the first ten points, from halton_02_00010_output.txt of J. Burkardt's star_discrepancy.
+    let ten = exact(&halton(10, 2), 2);
+    assert!((0.266667 - 5e-7..=0.267443).contains(&ten));
+}
+
+#[test]
+fn star_discrepancy_of_hammersley() {
+    for (count, printed) in [
+        (8, "0.312500000"),
+        (10, "0.250000000"),
+        (16, "0.171875000"),
+        (20, "0.143750000"),
+        (32, "0.097656250"),
+        (50, "0.068750000"),
+        (64, "0.053710938"),
+        (100, "0.037812500"),
+        (128, "0.029541016"),
+        (256, "0.016052246"),
+    ] {
+        assert_prints(exact(&hammersley(count), 2), printed);
+    }
+    assert_eq!(exact(&hammersley(2), 2), 0.75);
+    // Halton and Zaremba (1969), "The extreme and L2 discrepancies of some plane sets",
+    // https://doi.org/10.1007/BF01304630: with N = 2^m points,
+    // N D = m / 3 + 13 / 9 - (-1)^m 4 / (9 2^m).
+    for m in (0..=16).filter(|&m| m != 1) {
+        let n = 2.0_f64.powi(m);
+        let sign = if m % 2 == 0 { 1.0 } else { -1.0 };
+        let expected = (f64::from(m) / 3.0 + 13.0 / 9.0 - sign * 4.0 / (9.0 * n)) / n;
+        let value = exact(&hammersley(1 << m), 2);
+        assert!((value - expected).abs() < 1e-15, "{m}: {value} {expected}");
+    }
+}
+
+#[test]
+fn star_discrepancy_of_sobol_in_the_plane() {
+    for (count, printed) in [
+        (4, "0.437500000"),
+        (8, "0.312500000"),
+        (16, "0.171875000"),
+        (32, "0.089843750"),
+        (64, "0.053710938"),
+        (128, "0.025146484"),
+        (256, "0.014587402"),
+    ] {
+        assert_prints(exact(&sobol(count), 2), printed);
+    }
+}
+
+#[test]
+fn one_point_is_best_where_its_box_is_as_large_as_what_is_left() {
+    assert_eq!(exact(&[0.5], 1), 0.5);
+    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+    assert!((exact(&[golden, golden], 2) - golden).abs() < 1e-15);
+    assert_eq!(exact(&[0.0, 0.0], 2), 1.0);
+    assert_eq!(exact(&[1.0, 1.0], 2), 1.0);
+}
+
+#[test]
+fn l2_star_discrepancy_of_halton() {
+    // Exact rational arithmetic, as above.
+    let line = [(8, "0.005208333"), (16, "0.001302083"), (32, "0.000325521")];
+    for (count, printed) in line {
+        let rows = halton(count, 1);
+        assert_prints(
+            L2::Star.squared(&Points::from_rows(&rows, 1).unwrap()),
+            printed,
+        );
+    }
+    let plane = [(8, "0.016227816"), (16, "0.004657761"), (32, "0.001409269")];
+    for (count, printed) in plane {
+        let rows = halton(count, 2);
+        assert_prints(
+            L2::Star.squared(&Points::from_rows(&rows, 2).unwrap()),
+            printed,
+        );
+    }
+}
+
+#[test]
+fn l2_star_discrepancy_of_hammersley() {
+    // Halton and Zaremba (1969), as above: with N = 2^m points,
+    // (N D)^2 = m^2 / 64 + 29 m / 192 + 3 / 8 - m / (16 2^m) + 1 / (4 2^m) - 1 / (72 4^m).
+    for m in 0..=13 {
+        let n = 2.0_f64.powi(m);
+        let f = f64::from(m);
+        let expected = f * f / 64.0 + 29.0 * f / 192.0 + 0.375 - f / (16.0 * n) + 0.25 / n
+            - 1.0 / (72.0 * n * n);
+        let rows = hammersley(1 << m);
+        let squared = L2::Star.squared(&Points::from_rows(&rows, 2).unwrap());
+        let value = squared * n * n;
+        assert!(
+            (value / expected - 1.0).abs() < 1e-10,
+            "{m}: {value} {expected}"
+        );
+    }
+}
+
+#[test]
+fn the_star_discrepancy_is_the_largest_local_one() {
+    let rows = halton(37, 1);
+    let points = Points::from_rows(&rows, 1).unwrap();
+    let largest = LocalCurve::new(&points)
+        .unwrap()
+        .knots()
+        .iter()
+        .map(|knot| knot.below.abs().max(knot.above.abs()))
+        .fold(0.0, f64::max);
+    assert_eq!(largest, exact(&rows, 1));
+    // A curve and a count of points below: the same.
+    for knot in LocalCurve::new(&points).unwrap().knots() {
+        assert_eq!(local(&points, &[knot.corner]).unwrap(), knot.below.abs());
+    }
+}
+
+/// Coordinates of few values, so that many are equal, 0 and 1 among them; or of all.
+fn rows(dimensions: usize, most: usize) -> impl Strategy<Value = Vec<f64>> {
+    let coordinate = prop_oneof![
+        2 => (0..=8_u32).prop_map(|eighths| f64::from(eighths) / 8.0),
+        3 => 0.0..1.0_f64,
+    ];
+    (1..=most)
+        .prop_flat_map(move |count| prop::collection::vec(coordinate.clone(), count * dimensions))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn the_line_agrees_with_exhaustive_search(rows in rows(1, 20)) {
+        prop_assert!((exact(&rows, 1) - exhaustive(&rows, 1)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_plane_agrees_with_exhaustive_search(rows in rows(2, 24)) {
+        prop_assert!((exact(&rows, 2) - exhaustive(&rows, 2)).abs() < 1e-15);
+    }
+}

@@ -9,6 +9,7 @@ use core::ops::Range;
 
 use crate::Cursor;
 
+mod block;
 mod blue_noise;
 mod digits;
 mod faure;
@@ -158,11 +159,19 @@ pointer!(&P, Box<P>);
 /// # Panics
 ///
 /// As [`PointSet::fill`] does.
-pub(crate) fn rows<'a>(
+fn rows<'a>(
     first: u64,
     dimensions: &Range<u32>,
     out: &'a mut [f64],
 ) -> impl Iterator<Item = (u64, &'a mut [f64])> {
+    check(first, dimensions, out);
+    (0..)
+        .zip(out.chunks_exact_mut(dimensions.len().max(1)))
+        .map(move |(row, out)| (first + row, out))
+}
+
+/// Refuses what [`PointSet::fill`] refuses.
+fn check(first: u64, dimensions: &Range<u32>, out: &[f64]) {
     let width = dimensions.len();
     assert!(
         out.is_empty() || out.len().is_multiple_of(width),
@@ -174,7 +183,4 @@ pub(crate) fn rows<'a>(
         count == 0 || first.checked_add(count - 1).is_some(),
         "fill: {count} points from index {first} on pass the last index"
     );
-    (0..)
-        .zip(out.chunks_exact_mut(width.max(1)))
-        .map(move |(row, out)| (first + row, out))
 }

@@ -59,9 +59,9 @@ impl BlueNoise {
     }
 
     /// The points of the pixel `pixel`, whose coordinates are taken modulo 2^16.
-    pub fn pixel(&self, pixel: [u32; 2]) -> BlueNoisePixel<'_> {
+    pub fn pixel(&self, pixel: [u32; 2]) -> BlueNoisePixel {
         BlueNoisePixel {
-            image: self,
+            image: self.clone(),
             first: morton(pixel) << self.samples,
         }
     }
@@ -77,24 +77,24 @@ fn morton(pixel: [u32; 2]) -> u64 {
     x | y << 1
 }
 
-/// The points of one pixel of an image. Made by [`BlueNoise::pixel`].
+/// The points of one pixel of an image, made by [`BlueNoise::pixel`]. Shares the table of the image.
 ///
 /// An index at or past the size belongs to another, independent image.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 #[must_use]
-pub struct BlueNoisePixel<'a> {
-    image: &'a BlueNoise,
+pub struct BlueNoisePixel {
+    image: BlueNoise,
     first: u64,
 }
 
-impl PointSet for BlueNoisePixel<'_> {
+impl PointSet for BlueNoisePixel {
     #[inline]
     fn coordinate(&self, index: u64, dimension: u32) -> f64 {
         let BlueNoise {
             sobol,
             samples,
             seed,
-        } = self.image;
+        } = &self.image;
         let (image, sample) = (index >> samples, index & ((1 << samples) - 1));
         let (pair, axis) = (dimension / 2, dimension % 2);
         let key = hash(hash(*seed, image), u64::from(pair));

@@ -106,9 +106,7 @@ fn with_tile<K: Kernel>(
     let mut sums = [0.0; LANES];
     for first in [0, LANES] {
         let mut products = [0.0; LANES];
-        for lane in 0..LANES {
-            products[lane] = counts[first + lane];
-        }
+        products.copy_from_slice(&counts[first..first + LANES]);
         for (dimension, (&here, there)) in point.iter().zip(columns).enumerate() {
             for lane in 0..LANES {
                 let there = [there[0][first + lane], there[1][first + lane]];

@@ -6,6 +6,7 @@ mod pairs;
 
 use self::compensated::Compensated;
 use self::kernel::{Centred, Extreme, Kernel, Mixture, Star, Symmetric, WrapAround};
+use self::pairs::Tiles;
 use super::Points;
 
 /// The discrepancies that are root mean squares over a family of boxes, each a double sum over the points.
@@ -117,7 +118,13 @@ fn squared<K: Kernel>(points: &Points<'_>) -> f64 {
     }
     squared.merge(singles.times(-2.0).over(count));
     let scale = power(K::SCALE).value();
-    squared.merge(pairs::sum::<K>(points).times(scale).over(count).over(count));
+    squared.merge(
+        Tiles::new::<K>(points)
+            .sum::<K>(|_, k| k)
+            .times(scale)
+            .over(count)
+            .over(count),
+    );
     // What is left of the sum may be smaller than the rounding of the products in it.
     squared.value().max(0.0)
 }

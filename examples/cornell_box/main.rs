@@ -141,6 +141,7 @@ fn data(arguments: &Arguments, noise: f64, curves: &[Curve]) -> serde_json::Valu
             "points": curve.points.name(),
             "samples": curve.samples.iter().map(sample).collect::<Vec<_>>(),
             "slope": curve.slope(noise),
+            "slope_over_samples": curve.slope_over_samples(noise),
         })).collect::<Vec<_>>(),
     })
 }

@@ -48,7 +48,7 @@ impl BinaryScramble for LinearMatrix {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn scramble(&self, key: u64, digits: u64) -> u64 {
         digits ^ key
     }

@@ -25,7 +25,7 @@ pub(crate) enum Points {
 }
 
 /// Dimensions of the sets: those of the paths that matter. Longer ones go on with independent coordinates.
-const DIMENSIONS: u32 = 64;
+const DIMENSIONS: u32 = 32;
 
 impl Points {
     pub(crate) const ALL: [Self; 6] = [

@@ -94,15 +94,23 @@
 //!
 //! Without features the crate depends on `rand` alone.
 
+mod block;
 mod error;
+mod estimate;
 mod estimator;
 mod evaluate;
 mod integrand;
 mod moments;
+mod progressive;
+mod quantile;
 mod reduce;
 mod sampler;
+mod tallied;
+mod tally;
 mod value;
+mod warning;
 
+pub mod convergence;
 pub mod discrepancy;
 pub mod estimators;
 pub mod hash;
@@ -110,12 +118,17 @@ pub mod integrands;
 #[cfg(feature = "path")]
 pub mod path;
 pub mod points;
+pub mod warp;
 
 pub use error::{Error, Incomplete};
-pub use estimator::{Estimate, Estimator, NonFinite, Outcome};
+pub use estimate::{ErrorBar, Estimate, Interval, Stop};
+pub use estimator::{Estimator, NonFinite, Outcome};
 pub use estimators::{Average, MonteCarlo, Replicated};
 pub use integrand::{Cube, Integrand, cube};
 pub use moments::Moments;
+pub use progressive::Progressive;
 pub use reduce::each;
 pub use sampler::{Cursor, Sampler, Stream};
+pub use tallied::Tallies;
 pub use value::Value;
+pub use warning::Warning;

@@ -5,7 +5,7 @@ mod local;
 mod points;
 mod star;
 
-pub use l2::L2;
+pub use l2::{L2, UpdatableL2};
 pub use local::{Knot, LocalCurve, local};
 pub use points::Points;
-pub use star::{AnchoredBox, Boundary, StarDiscrepancy, star};
+pub use star::{AnchoredBox, Boundary, Star, StarDiscrepancy, star};

@@ -111,6 +111,7 @@ mod tally;
 mod value;
 mod warning;
 
+pub mod convergence;
 pub mod discrepancy;
 pub mod estimators;
 pub mod hash;

@@ -1,6 +1,6 @@
 //! Discrepancies against published values, closed forms and exhaustive search.
 
-use estimand::discrepancy::{Boundary, L2, LocalCurve, Points, StarDiscrepancy, local, star};
+use estimand::discrepancy::{Boundary, L2, LocalCurve, Points, Star, StarDiscrepancy, local, star};
 use proptest::prelude::*;
 
 /// The radical inverse as the quotient of two whole numbers: right to the last bit.
@@ -49,7 +49,7 @@ fn sobol(count: u64) -> Vec<f64> {
 
 fn exact(rows: &[f64], dimensions: usize) -> f64 {
     let points = Points::from_rows(rows, dimensions).unwrap();
-    let StarDiscrepancy::Exact { value, attained } = star(&points).unwrap() else {
+    let StarDiscrepancy::Exact { value, attained } = star(&points) else {
         panic!("no exact value");
     };
     // The box shows the value.
@@ -272,5 +272,59 @@ proptest! {
     #[test]
     fn the_plane_agrees_with_exhaustive_search(rows in rows(2, 24)) {
         prop_assert!((exact(&rows, 2) - exhaustive(&rows, 2)).abs() < 1e-15);
+    }
+}
+
+/// What every answer of a kind must hold, given the true value.
+fn check_kinds(rows: &[f64], dimensions: usize) {
+    let truth = exhaustive(rows, dimensions);
+    let points = Points::from_rows(rows, dimensions).unwrap();
+    assert!((exact(rows, dimensions) - truth).abs() < 1e-14);
+    let rounding = 1e-14;
+    for work in [0, 1000, 10_000, 100_000] {
+        let found = Star::default().work(work).measure(&points);
+        assert!(found.lower() <= truth + rounding, "{found:?} {truth}");
+        let above = found.upper().is_none_or(|upper| upper >= truth - rounding);
+        assert!(above, "{found:?} {truth}");
+        let found = Star::default().work(work).lower_bound(&points);
+        assert!(found.lower() <= truth + rounding, "{found:?} {truth}");
+    }
+    for gap in [0.0, 0.01, 0.1] {
+        let found = Star::default().bounds(&points, gap).unwrap();
+        let upper = found.upper().unwrap();
+        assert!(upper - found.lower() <= gap + rounding, "{found:?} {gap}");
+        assert!(found.lower() <= truth + rounding && upper >= truth - rounding);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn space_agrees_with_exhaustive_search(rows in rows(3, 14)) {
+        check_kinds(&rows, 3);
+    }
+
+    #[test]
+    fn four_dimensions_agree_with_exhaustive_search(rows in rows(4, 8)) {
+        check_kinds(&rows, 4);
+    }
+
+    #[test]
+    fn five_dimensions_agree_with_exhaustive_search(rows in rows(5, 6)) {
+        check_kinds(&rows, 5);
+    }
+}
+
+#[test]
+fn star_discrepancy_of_halton_in_space() {
+    for (count, printed) in [
+        (8, "0.466666667"),
+        (10, "0.346666667"),
+        (16, "0.275000000"),
+        (32, "0.169583333"),
+        (64, "0.097041667"),
+    ] {
+        assert_prints(exact(&halton(count, 3), 3), printed);
     }
 }

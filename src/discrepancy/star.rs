@@ -1,11 +1,17 @@
 //! The star discrepancy, and what kind of number an answer is.
 
+mod cells;
+mod grid;
 mod line;
 mod plane;
+mod search;
+mod separable;
 mod sweep;
+mod threshold_accepting;
 
 use super::Points;
-use crate::Error;
+
+pub use search::{Star, star};
 
 /// A star discrepancy, or what is known of it, with the box that shows it.
 ///
@@ -121,50 +127,4 @@ pub enum Boundary {
     Open,
     /// They do, and too many points are inside.
     Closed,
-}
-
-/// The star discrepancy `sup_y | vol [0, y) - #{x in [0, y)} / n |`, the supremum over all corners `y` in `[0, 1]^d`.
-///
-/// The supremum is the maximum over *open* boxes of volume minus share of points, and over *closed* boxes of
-/// share minus volume, both with corners on the grid of the points' coordinates and 1.[^doerr] Boxes with corners
-/// at the points alone are not enough, and give values that are up to 30 % too low.
-///
-/// - One dimension: sorting, `O(n log n)`.[^niederreiter]
-/// - Two dimensions: a sweep over a kinetic tree, about `O(n log^2 n)`.
-///
-/// ```
-/// use estimand::discrepancy::{Boundary, Points, star};
-///
-/// // The first four points of Halton's sequence in the bases 2 and 3.
-/// let halton = [[0.0, 0.0], [0.5, 1.0 / 3.0], [0.25, 2.0 / 3.0], [0.75, 1.0 / 9.0]];
-/// let star = star(&Points::from_arrays(&halton)?)?;
-/// assert!((star.lower() - 0.5).abs() < 1e-15);
-/// assert_eq!(star.upper(), Some(star.lower()));
-/// # Ok::<(), estimand::Error>(())
-/// ```
-///
-/// # Errors
-///
-/// [`Error::Refused`] for points of more than two dimensions.
-///
-/// [^doerr]: Doerr, Carola; Gnewuch, Michael; Wahlström, Magnus (2014). *Calculation of Discrepancy Measures and
-///     Applications*. <https://arxiv.org/abs/1405.1653>
-/// [^niederreiter]: Niederreiter, Harald (1992). *Random Number Generation and Quasi-Monte Carlo Methods*, theorem
-///     2.6. <https://doi.org/10.1137/1.9781611970081>
-pub fn star(points: &Points<'_>) -> Result<StarDiscrepancy, Error> {
-    let attained = match points.dimensions() {
-        1 => line::attained(points),
-        2 => plane::attained(points),
-        dimensions => {
-            return Err(Error::refused(
-                "number of dimensions",
-                "at most 2 for the exact star discrepancy",
-                dimensions,
-            ));
-        }
-    };
-    Ok(StarDiscrepancy::Exact {
-        value: attained.excess(points.count()),
-        attained,
-    })
 }

@@ -1,21 +1,35 @@
 //! All shapes of a scene, and which of them a ray meets.
 
-use std::time::Duration;
+mod sweep;
+mod tree;
 
-use glam::Vec3A;
-use obvhs::BvhBuildParams;
-use obvhs::aabb::Aabb;
-use obvhs::cwbvh::CwBvh;
-use obvhs::cwbvh::builder::build_cwbvh;
-use obvhs::ray::RayHit;
-
-use super::ray::{Ray, Surface, gamma};
+use super::ray::{Ray, Surface};
 use super::shape::{Primitive, Shape};
 
-/// The shapes of a scene in a bounding volume hierarchy.
+use sweep::Sweep;
+use tree::Tree;
+
+/// The shapes of a scene, and a way to find them.
+#[derive(Debug)]
 pub(in crate::path) struct Geometry {
     shapes: Vec<Primitive>,
-    tree: CwBvh,
+    search: Search,
+}
+
+/// How the shapes that a ray meets are found.
+#[derive(Debug)]
+enum Search {
+    /// By looking at all of them.
+    Sweep(Sweep),
+    /// By boxes around groups of them.
+    Tree(Tree),
+}
+
+/// A shape at a distance along a ray.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    shape: usize,
+    distance: f32,
 }
 
 /// The nearest shape that a ray meets.
@@ -25,59 +39,36 @@ pub(in crate::path) struct Hit {
     pub(in crate::path) surface: Surface,
 }
 
+/// Up to so many shapes are swept over: there a sweep of vectors is faster than a tree.
+const FEW: usize = 48;
+
 impl Geometry {
     pub(in crate::path) fn new(shapes: Vec<Primitive>) -> Self {
-        let boxes: Vec<Aabb> = shapes.iter().map(bounds).collect();
-        let tree = if shapes.is_empty() {
-            CwBvh::default()
+        let search = if shapes.len() <= FEW {
+            Search::Sweep(Sweep::new(&shapes))
         } else {
-            build_cwbvh(
-                &boxes,
-                BvhBuildParams::very_slow_build(),
-                &mut Duration::default(),
-            )
+            Search::Tree(Tree::new(&shapes))
         };
-        Self { shapes, tree }
+        Self { shapes, search }
     }
 
     /// The first shape that the ray meets.
     #[inline]
     pub(in crate::path) fn nearest(&self, ray: &Ray) -> Option<Hit> {
-        let mut hit = RayHit::none();
-        let whole = obvhs::ray::Ray::new_inf(ray.origin, ray.direction);
-        let found = self.tree.ray_traverse(whole, &mut hit, |so_far, slot| {
-            let shape = &self.shapes[self.tree.primitive_indices[slot] as usize];
-            shape.intersect(ray, so_far.tmax).unwrap_or(f32::INFINITY)
-        });
-        found.then(|| {
-            let shape = self.tree.primitive_indices[hit.primitive_id as usize] as usize;
-            let surface = self.shapes[shape].surface(ray, hit.t);
-            Hit { shape, surface }
-        })
+        let Found { shape, distance } = match &self.search {
+            Search::Sweep(sweep) => sweep.nearest(ray),
+            Search::Tree(tree) => tree.nearest(&self.shapes, ray),
+        }?;
+        let surface = self.shapes[shape].surface(ray, distance);
+        Some(Hit { shape, surface })
     }
 
-    /// Whether any shape is between two points of surfaces.
+    /// Whether the ray meets any shape nearer than `limit`.
     #[inline]
     pub(in crate::path) fn occluded(&self, ray: &Ray, limit: f32) -> bool {
-        let segment = obvhs::ray::Ray::new(ray.origin, ray.direction, 0.0, limit);
-        !self.tree.ray_traverse_miss(segment, |_, slot| {
-            let shape = &self.shapes[self.tree.primitive_indices[slot] as usize];
-            shape.intersect(ray, limit).unwrap_or(f32::INFINITY)
-        })
-    }
-}
-
-/// A box around the shape, widened by what rounding does to a ray's way to it.
-fn bounds(shape: &Primitive) -> Aabb {
-    let [low, high] = shape.bounds();
-    let margin = gamma(8) * low.abs().max(high.abs()).max(high - low).max_element();
-    Aabb::new(low - Vec3A::splat(margin), high + Vec3A::splat(margin))
-}
-
-impl core::fmt::Debug for Geometry {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_struct("Geometry")
-            .field("shapes", &self.shapes)
-            .finish_non_exhaustive()
+        match &self.search {
+            Search::Sweep(sweep) => sweep.occluded(ray, limit),
+            Search::Tree(tree) => tree.occluded(&self.shapes, ray, limit),
+        }
     }
 }

@@ -4,6 +4,6 @@ mod cornell_box;
 mod environment;
 mod furnace;
 
-pub use cornell_box::{cornell_box, cornell_box_specular};
+pub use cornell_box::{CORNELL_LIGHT, cornell_box, cornell_box_lit, cornell_box_specular};
 pub use environment::environment;
 pub use furnace::furnace;

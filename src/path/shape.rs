@@ -37,7 +37,7 @@ pub trait Shape {
     fn sample(&self, from: Vec3A, u: [f32; 2]) -> Surface;
 
     /// The density, per solid angle seen from `from`, with which [`sample`](Self::sample) draws the point of
-    /// `surface`; zero or more, infinite where the point is seen edge-on.
+    /// `surface`: positive, and [`f32::MAX`] at most, which stands for a point seen edge-on.
     fn density(&self, from: Vec3A, surface: &Surface) -> f32;
 }
 
@@ -116,5 +116,7 @@ impl Shape for Primitive {
 fn density_of_area(from: Vec3A, surface: &Surface, area: f32) -> f32 {
     let offset = surface.point - from;
     let squared = offset.length_squared();
-    squared * squared.sqrt() / (surface.normal.dot(offset).abs() * area)
+    let density = squared * squared.sqrt() / (surface.normal.dot(offset).abs() * area);
+    // Also where it is NaN, as it is for a point seen from itself.
+    density.min(f32::MAX)
 }

@@ -1,10 +1,12 @@
 //! Halton's points.
 
+use core::ops::Range;
 use std::sync::Arc;
 
+use super::block::{Block, vectorised};
 use super::digits::Base;
 use super::scramble::{DigitScramble, Plain};
-use super::{Independent, PointSet};
+use super::{Independent, PointSet, rows};
 use crate::Error;
 
 /// Halton's points: the coordinate in dimension `d` is the radical inverse of the index in the base that is the prime
@@ -27,7 +29,7 @@ use crate::Error;
 ///
 /// # Memory
 ///
-/// 32 bytes for a dimension, shared by all clones and scrambled ones.
+/// 40 bytes for a dimension, shared by all clones and scrambled ones.
 ///
 /// ```
 /// use estimand::points::{Halton, PointSet};
@@ -106,32 +108,144 @@ impl<S: DigitScramble> PointSet for Halton<S> {
         }
     }
 
+    fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+        // A wrapped first index would break the runs of indices.
+        let contiguous = self
+            .first
+            .checked_add(first)
+            .is_some_and(|first| first.checked_add(out.len() as u64).is_some());
+        if S::NESTED || !contiguous {
+            for (index, row) in rows(first, &dimensions, out) {
+                for (dimension, coordinate) in dimensions.clone().zip(row) {
+                    *coordinate = self.coordinate(index, dimension);
+                }
+            }
+            return;
+        }
+        let first = self.first + first;
+        let mut block = Block::new(first, dimensions, out, self.dimensions(), self.seed());
+        let inside = block.dimensions.clone();
+        let mut room = Room::new();
+        for (tile, start) in inside
+            .clone()
+            .step_by(TOGETHER)
+            .zip((0..).step_by(TOGETHER))
+        {
+            let count = TOGETHER.min((inside.end - tile) as usize);
+            vectorised(
+                #[inline(always)]
+                || self.fill_tile(&mut block, &mut room, tile, start..start + count),
+            );
+        }
+    }
+
     #[expect(clippy::cast_possible_truncation, reason = "at most 2^16 bases")]
     fn dimensions(&self) -> u32 {
         self.bases.len() as u32
     }
 }
 
-/// The first `count` prime numbers.
-pub(super) fn primes(count: u32) -> Vec<u32> {
-    // The n-th prime is below n (ln n + ln ln n) for n > 5 (Rosser and Schoenfeld 1962).
-    let n = f64::from(count.max(6));
-    #[expect(clippy::cast_possible_truncation, reason = "the count is small")]
-    let limit = (n * (n.ln() + n.ln().ln())) as usize + 1;
-    let mut composite = vec![false; limit + 1];
-    let mut primes = Vec::new();
-    for (number, candidate) in (2_u32..).zip(2..=limit) {
-        if primes.len() == count as usize {
-            break;
-        }
-        if !composite[candidate] {
-            primes.push(number);
-            for multiple in (candidate * candidate..=limit).step_by(candidate) {
-                composite[multiple] = true;
-            }
+/// Dimensions that are computed before their coordinates are put in their places.
+const TOGETHER: usize = 4;
+
+/// Points that are.
+const POINTS: usize = 256;
+
+/// Memory of [`Halton::fill_tile`].
+struct Room {
+    tables: [Vec<f64>; TOGETHER],
+    columns: [[f64; POINTS]; TOGETHER],
+}
+
+impl Room {
+    fn new() -> Self {
+        Self {
+            tables: [const { Vec::new() }; TOGETHER],
+            columns: [[0.0; POINTS]; TOGETHER],
         }
     }
-    primes
+}
+
+impl<S: DigitScramble> Halton<S> {
+    /// Writes the coordinates in the dimensions from `dimension` on into `columns` of the block, [`TOGETHER`] at most.
+    #[inline(always)]
+    fn fill_tile(
+        &self,
+        block: &mut Block<'_>,
+        room: &mut Room,
+        dimension: u32,
+        columns: Range<usize>,
+    ) {
+        let count = block.count();
+        let bases = &self.bases[dimension as usize..][..columns.len()];
+        let keyed = || {
+            bases
+                .iter()
+                .zip((dimension..).map(|d| self.scramble.key(d)))
+        };
+        // A table pays if most of it is used.
+        let pays = |base: &Base| base.power() <= 2 * count;
+        for ((base, key), table) in keyed().zip(&mut room.tables) {
+            if pays(base) {
+                base.table(&self.scramble, key, table);
+            }
+        }
+        let mut index = block.first;
+        for out in block.out.chunks_mut(POINTS * block.width) {
+            let points = out.len() / block.width;
+            for (((base, key), table), column) in keyed().zip(&room.tables).zip(&mut room.columns) {
+                let column = &mut column[..points];
+                if pays(base) {
+                    base.inverses(&self.scramble, key, table, index, column);
+                } else {
+                    for (index, u) in (index..).zip(column) {
+                        *u = base.inverse(&self.scramble, key, index);
+                    }
+                }
+            }
+            let rows = out.chunks_exact_mut(block.width);
+            if columns.len() == TOGETHER {
+                let [a, b, c, d] = &room.columns;
+                for ((((row, a), b), c), d) in rows.zip(a).zip(b).zip(c).zip(d) {
+                    row[columns.start..][..TOGETHER].copy_from_slice(&[*a, *b, *c, *d]);
+                }
+            } else {
+                for (point, row) in rows.enumerate() {
+                    for (u, column) in row[columns.clone()].iter_mut().zip(&room.columns) {
+                        *u = column[point];
+                    }
+                }
+            }
+            index += points as u64;
+        }
+    }
+}
+
+/// The first `count` prime numbers.
+fn primes(count: u32) -> Vec<u32> {
+    // The n-th prime is below n (ln n + ln ln n) for n > 5 (Rosser and Schoenfeld 1962).
+    let n = f64::from(count.max(6));
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a positive number below 2^20"
+    )]
+    let limit = (n * (n.ln() + n.ln().ln())) as u32 + 1;
+    primes_up_to(limit).take(count as usize).collect()
+}
+
+/// The prime numbers up to `limit`, in order, by the sieve of Eratosthenes.
+pub(super) fn primes_up_to(limit: u32) -> impl Iterator<Item = u32> {
+    let length = limit as usize + 1;
+    let mut composite = vec![false; length];
+    (2..=limit).zip(2..).filter_map(move |(number, place)| {
+        if composite[place] {
+            return None;
+        }
+        let multiples = (place * place..length).step_by(place);
+        multiples.for_each(|multiple| composite[multiple] = true);
+        Some(number)
+    })
 }
 
 #[cfg(test)]

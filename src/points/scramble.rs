@@ -30,6 +30,7 @@ mod owen;
 pub use digit_permutation::DigitPermutation;
 pub use digital_shift::DigitalShift;
 pub use hashed_owen::HashedOwen;
+pub(super) use hashed_owen::scramble;
 pub use linear_matrix::LinearMatrix;
 pub use owen::Owen;
 

@@ -3,8 +3,9 @@
 use core::ops::Range;
 use std::sync::Arc;
 
+use super::block::{Block, vectorised};
 use super::scramble::{BinaryScramble, Columns, Plain};
-use super::{Independent, PointSet, rows};
+use super::{Independent, PointSet};
 use crate::Error;
 use crate::hash::unit;
 
@@ -122,7 +123,7 @@ impl<S> Sobol<S> {
 impl<S: BinaryScramble> Sobol<S> {
     /// The digits of a coordinate before they are scrambled.
     #[inline]
-    fn digits(&self, index: u64, dimension: u32) -> u64 {
+    pub(super) fn digits(&self, index: u64, dimension: u32) -> u64 {
         let mut digits = 0;
         let mut rest = index;
         while rest != 0 {
@@ -149,9 +150,119 @@ impl<S: BinaryScramble> PointSet for Sobol<S> {
     }
 
     fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
-        for (index, row) in rows(first, &dimensions, out) {
-            for (dimension, coordinate) in dimensions.clone().zip(row) {
-                *coordinate = self.coordinate(index, dimension);
+        let mut block = Block::new(
+            first,
+            dimensions,
+            out,
+            self.dimensions,
+            self.scramble.seed(),
+        );
+        let inside = block.dimensions.clone();
+        let start = inside.start;
+        for tile in inside.clone().step_by(TILE as usize) {
+            let dimensions = tile..inside.end.min(tile + TILE);
+            vectorised(
+                #[inline(always)]
+                || self.fill_tile(&mut block, dimensions, (tile - start) as usize),
+            );
+        }
+    }
+}
+
+/// Coordinates that are computed side by side at most.
+const LANES: usize = TILE as usize;
+const TILE: u32 = 64;
+
+/// Rows of lanes that share all but the low bits of their indices.
+const STEPS: usize = 8;
+
+impl<S: BinaryScramble> Sobol<S> {
+    /// Writes the coordinates in `dimensions`, [`LANES`] at most, into the columns of the block from `start` on.
+    ///
+    /// The lanes are the coordinates of `2^k` consecutive points, where that many rows lie side by side, or of one. From one
+    /// row of lanes to the next their digits change by the same columns: the rows of an aligned block of [`STEPS`] have
+    /// the digits of its first row, changed by what the low bits of the index add.
+    #[inline(always)]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "remainders of a division by small numbers"
+    )]
+    fn fill_tile(&self, block: &mut Block<'_>, dimensions: Range<u32>, start: usize) {
+        let (width, stride) = (dimensions.len(), block.width);
+        let together = if width == stride {
+            1 << (LANES / width).ilog2()
+        } else {
+            1
+        };
+        let lanes = together * width;
+        let bits = together.trailing_zeros();
+        // Single points until the first aligned one, and after the last whole row of lanes.
+        let misaligned = block.first.wrapping_neg() % together as u64;
+        let head = block.count().min(misaligned as usize);
+        let whole = (block.count() - head) / together;
+        let tail = head + whole * together;
+        for row in (0..head).chain(tail..block.count()) {
+            for (column, dimension) in (start..).zip(dimensions.clone()) {
+                let index = block.first + row as u64;
+                block.out[row * stride + column] = self.coordinate(index, dimension);
+            }
+        }
+        if whole == 0 {
+            return;
+        }
+
+        let mut keys = [0; LANES];
+        let mut digits = [0; LANES];
+        let mut steps = [[0; LANES]; STEPS];
+        // The number of the row of lanes: its first index without the bits that tell its points apart.
+        let mut number = (block.first + head as u64) >> bits;
+        let base = (number & !(STEPS as u64 - 1)) << bits;
+        for (lane, dimension) in (0..lanes).zip(dimensions.clone().cycle()) {
+            keys[lane] = self.scramble.key(dimension);
+            digits[lane] = self.digits(base | (lane / width) as u64, dimension);
+        }
+        let column = |bit: u32| {
+            let column = bit as usize * self.dimensions as usize + dimensions.start as usize;
+            &self.columns[column..][..width]
+        };
+        for bit in 0..STEPS.trailing_zeros() {
+            let (done, next) = steps.split_at_mut(1 << bit);
+            for (done, next) in done.iter().zip(next) {
+                let changes = column(bits + bit).iter().cycle();
+                for ((next, done), change) in next[..lanes].iter_mut().zip(done).zip(changes) {
+                    *next = done ^ change;
+                }
+            }
+        }
+
+        let span = lanes + (stride - width) * usize::from(together == 1);
+        let rows = block.out[head * stride + start..]
+            .chunks_mut(span)
+            .take(whole);
+        for row in rows {
+            let step = &steps[number as usize % STEPS];
+            let row = &mut row[..lanes];
+            for lane in 0..lanes {
+                let digits = self
+                    .scramble
+                    .scramble(keys[lane], digits[lane] ^ step[lane]);
+                row[lane] = unit(digits);
+            }
+            number = number.wrapping_add(1);
+            if number.is_multiple_of(STEPS as u64) {
+                // The bits that counting up has changed, above those of the steps.
+                let changed = (number ^ number.wrapping_sub(1)) >> STEPS.trailing_zeros();
+                for bit in 0..changed.trailing_ones() {
+                    // There is no bit past the last one, and no point either.
+                    let bit = bits + STEPS.trailing_zeros() + bit;
+                    if bit < u64::BITS {
+                        for (digits, change) in
+                            digits[..lanes].iter_mut().zip(column(bit).iter().cycle())
+                        {
+                            *digits ^= change;
+                        }
+                    }
+                }
             }
         }
     }

@@ -5,6 +5,10 @@ pub(super) trait Kernel {
     /// The integral of the kernel over both coordinates, as a fraction.
     const MEAN: (f64, f64);
 
+    /// Whether the kernel is 1 plus the kernel of one dimension alone, so that products over the dimensions contain all
+    /// projections.
+    const PROJECTIONS: bool;
+
     /// `K` is this times [`pair`](Self::pair): a power of two, which costs nothing here and one product
     /// a dimension there.
     const SCALE: f64;
@@ -23,6 +27,7 @@ pub(super) struct Star;
 
 impl Kernel for Star {
     const MEAN: (f64, f64) = (1.0, 3.0);
+    const PROJECTIONS: bool = false;
     const SCALE: f64 = 1.0;
 
     fn single(x: f64) -> f64 {
@@ -43,6 +48,7 @@ pub(super) struct Centred;
 
 impl Kernel for Centred {
     const MEAN: (f64, f64) = (13.0, 12.0);
+    const PROJECTIONS: bool = true;
     const SCALE: f64 = 1.0;
 
     fn single(x: f64) -> f64 {
@@ -64,6 +70,7 @@ pub(super) struct WrapAround;
 
 impl Kernel for WrapAround {
     const MEAN: (f64, f64) = (4.0, 3.0);
+    const PROJECTIONS: bool = true;
     const SCALE: f64 = 1.0;
 
     fn single(_: f64) -> f64 {
@@ -86,6 +93,7 @@ pub(super) struct Mixture;
 
 impl Kernel for Mixture {
     const MEAN: (f64, f64) = (19.0, 12.0);
+    const PROJECTIONS: bool = true;
     const SCALE: f64 = 0.5;
 
     fn single(x: f64) -> f64 {
@@ -110,6 +118,7 @@ pub(super) struct Symmetric;
 
 impl Kernel for Symmetric {
     const MEAN: (f64, f64) = (4.0, 3.0);
+    const PROJECTIONS: bool = true;
     const SCALE: f64 = 2.0;
 
     fn single(x: f64) -> f64 {
@@ -130,6 +139,7 @@ pub(super) struct Extreme;
 
 impl Kernel for Extreme {
     const MEAN: (f64, f64) = (1.0, 12.0);
+    const PROJECTIONS: bool = false;
     const SCALE: f64 = 1.0;
 
     fn single(x: f64) -> f64 {

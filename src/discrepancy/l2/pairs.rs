@@ -1,5 +1,7 @@
 //! The double sum over all pairs of points, in tiles that the first-level cache holds.
 
+use core::marker::PhantomData;
+
 use super::compensated::Compensated;
 use super::kernel::Kernel;
 use crate::discrepancy::Points;
@@ -7,129 +9,180 @@ use crate::reduce;
 
 /// Points in a tile.
 const TILE: usize = 64;
-/// Pairs whose products grow side by side. A constant, so that every machine adds in the same order.
-const LANES: usize = 16;
+/// Dimensions whose factors are multiplied in one pass over a tile.
+const TOGETHER: usize = 4;
 
-/// The features of the points' coordinates, tile by tile: for each dimension the first ones of all points of the tile,
-/// then the second ones. The last tile is padded with points of weight 0.
-struct Tiles {
-    features: Vec<f64>,
+/// One feature of the coordinates of all points in a tile.
+type Column = [f64; TILE];
+
+/// The features of the points' coordinates, tile by tile, dimension by dimension. The last tile is padded with points that
+/// count nothing.
+pub(super) struct Tiles {
+    columns: Vec<[Column; 2]>,
     /// 1 for a point, 0 for padding.
-    weights: Vec<[f64; TILE]>,
+    counts: Vec<Column>,
     dimensions: usize,
 }
 
 impl Tiles {
-    fn new<K: Kernel>(points: &Points<'_>) -> Self {
+    pub(super) fn new<K: Kernel>(points: &Points<'_>) -> Self {
         let dimensions = points.dimensions();
         let count = points.count().div_ceil(TILE);
-        let mut features = vec![0.0; count * dimensions * 2 * TILE];
-        let mut weights = vec![[0.0; TILE]; count];
+        let mut columns = vec![[[0.0; TILE]; 2]; count * dimensions];
+        let mut counts = vec![[0.0; TILE]; count];
         for (index, row) in points.rows().enumerate() {
             let (tile, place) = (index / TILE, index % TILE);
-            weights[tile][place] = 1.0;
-            for (dimension, &x) in row.iter().enumerate() {
-                let at = ((tile * dimensions + dimension) * 2) * TILE + place;
-                [features[at], features[at + TILE]] = K::features(x);
+            counts[tile][place] = 1.0;
+            for (columns, &x) in columns[tile * dimensions..].iter_mut().zip(row) {
+                [columns[0][place], columns[1][place]] = K::features(x);
             }
         }
         Self {
-            features,
-            weights,
+            columns,
+            counts,
             dimensions,
         }
     }
 
-    fn tile(&self, tile: usize) -> &[f64] {
-        let length = self.dimensions * 2 * TILE;
-        &self.features[tile * length..][..length]
+    fn columns(&self, tile: usize) -> &[[Column; 2]] {
+        &self.columns[tile * self.dimensions..][..self.dimensions]
+    }
+
+    /// The sum over all ordered pairs of points of the product over the dimensions of `factor`, which is given the
+    /// dimension and what [`Kernel::pair`] says.
+    pub(super) fn sum<K: Kernel>(
+        &self,
+        factor: impl Fn(usize, f64) -> f64 + Copy + Sync,
+    ) -> Compensated {
+        let mut total = Compensated::ZERO;
+        let taken: Result<(), core::convert::Infallible> = reduce::in_order(
+            self.counts.len() as u64,
+            |job| {
+                let tile = usize::try_from(job).expect("a tile is in memory");
+                let row = Row::<K, _> {
+                    tiles: self,
+                    tile,
+                    factor,
+                    kernel: PhantomData,
+                };
+                row.run()
+            },
+            |part| {
+                total.merge(part);
+                Ok(())
+            },
+        );
+        let Ok(()) = taken;
+        total
+    }
+
+    /// The pairs of the points of one tile with those of it, and with those of all later tiles, which count twice.
+    #[inline(always)]
+    fn row<K: Kernel>(
+        &self,
+        here: usize,
+        factor: impl Fn(usize, f64) -> f64 + Copy,
+    ) -> Compensated {
+        let (mut once, mut twice) = (Compensated::ZERO, Compensated::ZERO);
+        let mut point = vec![[0.0; 2]; self.dimensions];
+        for there in here..self.counts.len() {
+            let sum = if there == here { &mut once } else { &mut twice };
+            for (place, &count) in self.counts[here].iter().enumerate() {
+                if count == 0.0 {
+                    break;
+                }
+                for (coordinate, columns) in point.iter_mut().zip(self.columns(here)) {
+                    *coordinate = [columns[0][place], columns[1][place]];
+                }
+                let columns = self.columns(there);
+                sum.add(with_tile::<K>(&point, columns, &self.counts[there], factor));
+            }
+        }
+        once.merge(twice.times(2.0));
+        once
     }
 }
 
-/// The sum over all ordered pairs of points of the product of [`Kernel::pair`] over the dimensions.
-pub(super) fn sum<K: Kernel>(points: &Points<'_>) -> Compensated {
-    let tiles = Tiles::new::<K>(points);
-    let count = tiles.weights.len();
-    let mut total = Compensated::ZERO;
-    let taken: Result<(), core::convert::Infallible> = reduce::in_order(
-        count as u64,
-        |job| {
-            let tile = usize::try_from(job).expect("a tile is in memory");
-            dispatch(|| row_of_tiles::<K>(&tiles, tile))
-        },
-        |part| {
-            total.merge(part);
-            Ok(())
-        },
-    );
-    let Ok(()) = taken;
-    total
-}
-
-/// The pairs of the points of one tile with those of it and of all later tiles, which count twice.
+/// The sum over the pairs of one point with those of a tile.
 #[inline(always)]
-fn row_of_tiles<K: Kernel>(tiles: &Tiles, here: usize) -> Compensated {
-    let (mut once, mut twice) = (Compensated::ZERO, Compensated::ZERO);
-    let mut point = vec![[0.0; 2]; tiles.dimensions];
-    for there in here..tiles.weights.len() {
-        let sum = if there == here { &mut once } else { &mut twice };
-        for (place, &weight) in tiles.weights[here].iter().enumerate() {
-            if weight == 0.0 {
-                break;
-            }
-            for (coordinate, columns) in point
-                .iter_mut()
-                .zip(tiles.tile(here).chunks_exact(2 * TILE))
-            {
-                *coordinate = [columns[place], columns[TILE + place]];
-            }
-            sum.add(point_with_tile::<K>(
-                &point,
-                tiles.tile(there),
-                &tiles.weights[there],
-            ));
-        }
+fn with_tile<K: Kernel>(
+    point: &[[f64; 2]],
+    columns: &[[Column; 2]],
+    counts: &Column,
+    factor: impl Fn(usize, f64) -> f64 + Copy,
+) -> f64 {
+    let mut products = *counts;
+    let (fours, ones) = point.as_chunks::<TOGETHER>();
+    let (columns_of_fours, columns_of_ones) = columns.as_chunks::<TOGETHER>();
+    let mut dimension = 0;
+    for (point, columns) in fours.iter().zip(columns_of_fours) {
+        multiply::<K, TOGETHER>(&mut products, point, columns, |k, pair| {
+            factor(dimension + k, pair)
+        });
+        dimension += TOGETHER;
     }
-    once.merge(twice.times(2.0));
-    once
-}
-
-#[inline(always)]
-fn point_with_tile<K: Kernel>(point: &[[f64; 2]], tile: &[f64], weights: &[f64; TILE]) -> f64 {
-    let mut sums = [0.0; LANES];
-    for lane in (0..TILE).step_by(LANES) {
-        let mut products: [f64; LANES] = weights[lane..][..LANES]
-            .try_into()
-            .expect("a tile is a multiple of the lanes");
-        for (&coordinate, columns) in point.iter().zip(tile.chunks_exact(2 * TILE)) {
-            let first = &columns[lane..][..LANES];
-            let second = &columns[TILE + lane..][..LANES];
-            for ((product, &first), &second) in products.iter_mut().zip(first).zip(second) {
-                *product *= K::pair(coordinate, [first, second]);
-            }
-        }
-        for (sum, product) in sums.iter_mut().zip(products) {
-            *sum += product;
-        }
+    for (point, columns) in ones.iter().zip(columns_of_ones) {
+        multiply::<K, 1>(&mut products, &[*point], &[*columns], |_, pair| {
+            factor(dimension, pair)
+        });
+        dimension += 1;
     }
-    let mut width = LANES / 2;
+    let mut width = TILE / 2;
     while width > 0 {
-        for lane in 0..width {
-            sums[lane] += sums[lane + width];
+        let (here, there) = products.split_at_mut(width);
+        for (sum, &term) in here.iter_mut().zip(&*there) {
+            *sum += term;
         }
         width /= 2;
     }
-    sums[0]
+    products[0]
 }
 
-/// Runs `job` compiled for the vector instructions of the machine at hand. The instructions change nothing in the
-/// result: no product is fused with a sum, and the lanes are those of [`LANES`] everywhere.
+/// Multiplies the products of one point with those of a tile by the factors of some dimensions.
+#[inline(always)]
+fn multiply<K: Kernel, const N: usize>(
+    products: &mut Column,
+    point: &[[f64; 2]; N],
+    columns: &[[Column; 2]; N],
+    factor: impl Fn(usize, f64) -> f64,
+) {
+    for lane in 0..TILE {
+        let mut product = products[lane];
+        for k in 0..N {
+            let there = [columns[k][0][lane], columns[k][1][lane]];
+            product *= factor(k, K::pair(point[k], there));
+        }
+        products[lane] = product;
+    }
+}
+
+/// [`Tiles::row`], compiled for the vector instructions of the machine at hand. They change nothing in the result: no
+/// product is fused with a sum, and the order of the sums is the same everywhere.
+struct Row<'a, K, F> {
+    tiles: &'a Tiles,
+    tile: usize,
+    factor: F,
+    kernel: PhantomData<K>,
+}
+
+impl<K: Kernel, F: Fn(usize, f64) -> f64 + Copy> Row<'_, K, F> {
+    #[cfg(feature = "simd")]
+    fn run(self) -> Compensated {
+        pulp::Arch::new().dispatch(self)
+    }
+
+    #[cfg(not(feature = "simd"))]
+    fn run(self) -> Compensated {
+        self.tiles.row::<K>(self.tile, self.factor)
+    }
+}
+
 #[cfg(feature = "simd")]
-fn dispatch<T>(job: impl FnOnce() -> T) -> T {
-    pulp::Arch::new().dispatch(job)
-}
+impl<K: Kernel, F: Fn(usize, f64) -> f64 + Copy> pulp::WithSimd for Row<'_, K, F> {
+    type Output = Compensated;
 
-#[cfg(not(feature = "simd"))]
-fn dispatch<T>(job: impl FnOnce() -> T) -> T {
-    job()
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Compensated {
+        self.tiles.row::<K>(self.tile, self.factor)
+    }
 }

@@ -85,8 +85,8 @@ impl Light for AreaLights {
         let Emitter { shape, radiance } = &self.emitters[chosen];
         let surface = shape.sample(from, singles([a, b]));
         let density = self.choices[chosen].times(shape.density(from, &surface));
-        let lit = surface.normal.dot(from - surface.point) > 0.0 && density > 0.0;
-        (lit && density.is_finite()).then_some(Illumination {
+        let lit = surface.normal.dot(from - surface.point) > 0.0;
+        (lit && density > 0.0 && density < f32::MAX).then_some(Illumination {
             surface,
             radiance: *radiance,
             density,

@@ -7,6 +7,11 @@ use crate::path::sensor::Pinhole;
 use crate::path::shape::{Flat, Sphere};
 use crate::path::{Object, Paths, Scene, View};
 
+/// The radiance of the light of the Cornell box, in linear red, green and blue.
+pub const CORNELL_LIGHT: [f32; 3] = [18.387, 13.9873, 6.75357];
+
+const VALID: &str = "the published box is a valid scene";
+
 /// The Cornell box: a diffuse room with a short and a tall block, and a light in the ceiling.[^cornell]
 ///
 /// The vertices of the blocks are as published; the room is a rectangular box of 556 by 548.8 by 559.2, open to
@@ -18,55 +23,60 @@ use crate::path::{Object, Paths, Scene, View};
 /// [^mitsuba]: Jakob, Wenzel; et al. (2022). *Mitsuba 3 renderer*, function `cornell_box`.
 ///     <https://mitsuba-renderer.org>
 pub fn cornell_box() -> View<Lambertian, AreaLights, NoEnvironment, Pinhole> {
-    let objects = || -> Result<_, Error> {
-        let mut objects = room()?;
-        objects.push(block([
-            [130.0, 165.0, 65.0],
-            [82.0, 165.0, 225.0],
-            [240.0, 165.0, 272.0],
-            [290.0, 165.0, 114.0],
-        ])?);
-        objects.push(block([
-            [423.0, 330.0, 247.0],
-            [265.0, 330.0, 296.0],
-            [314.0, 330.0, 456.0],
-            [472.0, 330.0, 406.0],
-        ])?);
-        Ok(objects)
-    };
-    view(objects())
+    cornell_box_lit(CORNELL_LIGHT).expect(VALID)
+}
+
+/// The [Cornell box](cornell_box) with another `radiance` of the light, in linear red, green and blue.
+///
+/// # Errors
+///
+/// [`Error::Refused`] for a component that is negative or not finite, and for no light at all.
+pub fn cornell_box_lit(
+    radiance: [f32; 3],
+) -> Result<View<Lambertian, AreaLights, NoEnvironment, Pinhole>, Error> {
+    let mut objects = room(radiance)?;
+    objects.push(block([
+        [130.0, 165.0, 65.0],
+        [82.0, 165.0, 225.0],
+        [240.0, 165.0, 272.0],
+        [290.0, 165.0, 114.0],
+    ])?);
+    objects.push(block([
+        [423.0, 330.0, 247.0],
+        [265.0, 330.0, 296.0],
+        [314.0, 330.0, 456.0],
+        [472.0, 330.0, 406.0],
+    ])?);
+    view(objects)
 }
 
 /// The Cornell box with a mirror ball and a glass ball in place of the blocks, hovering above the floor.
 pub fn cornell_box_specular() -> View<Material, AreaLights, NoEnvironment, Pinhole> {
-    let objects = || -> Result<_, Error> {
-        let mut objects = room()?;
+    let balls = || -> Result<_, Error> {
+        let mut objects = room(CORNELL_LIGHT)?;
         let mirror_ball = Sphere::new([390.0, 112.0, 370.0], 110.0)?;
         objects.push(Object::new([mirror_ball], Mirror::new([1.0; 3])?));
         let glass_ball = Sphere::new([170.0, 97.0, 190.0], 95.0)?;
         objects.push(Object::new([glass_ball], Dielectric::new(1.5, 1.0)?));
-        Ok(objects)
+        view(objects)
     };
-    view(objects())
+    balls().expect(VALID)
 }
 
 fn view<B: Bsdf>(
-    objects: Result<Vec<Object<B>>, Error>,
-) -> View<B, AreaLights, NoEnvironment, Pinhole> {
-    let sensor = Pinhole::look_at(
-        [278.0, 273.0, -800.0],
-        [278.0, 273.0, 0.0],
-        [0.0, 1.0, 0.0],
-        39.307_648_116_107,
-        1.0,
-    );
-    View {
-        scene: objects
-            .and_then(|objects| Scene::new(objects, NoEnvironment))
-            .expect("the published box is a valid scene"),
-        sensor: sensor.expect("the published camera is valid"),
+    objects: Vec<Object<B>>,
+) -> Result<View<B, AreaLights, NoEnvironment, Pinhole>, Error> {
+    Ok(View {
+        scene: Scene::new(objects, NoEnvironment)?,
+        sensor: Pinhole::look_at(
+            [278.0, 273.0, -800.0],
+            [278.0, 273.0, 0.0],
+            [0.0, 1.0, 0.0],
+            39.307_648_116_107,
+            1.0,
+        )?,
         paths: Paths::default(),
-    }
+    })
 }
 
 fn white() -> Result<Lambertian, Error> {
@@ -74,7 +84,7 @@ fn white() -> Result<Lambertian, Error> {
 }
 
 /// The walls and the light.
-fn room<B: From<Lambertian>>() -> Result<Vec<Object<B>>, Error> {
+fn room<B: From<Lambertian>>(radiance: [f32; 3]) -> Result<Vec<Object<B>>, Error> {
     let white_walls = [
         // Floor.
         rectangle([0.0, 0.0, 0.0], [0.0, 0.0, 559.2], [556.0, 0.0, 0.0])?,
@@ -95,7 +105,7 @@ fn room<B: From<Lambertian>>() -> Result<Vec<Object<B>>, Error> {
         Object::new(white_walls, white()?),
         Object::new([right], green),
         Object::new([left], red),
-        Object::new([light], white()?).emitting([18.387, 13.9873, 6.75357])?,
+        Object::new([light], white()?).emitting(radiance)?,
     ])
 }
 

@@ -16,18 +16,20 @@ use crate::path::ray::{Ray, Surface, gamma};
 ///     Transformation*. <https://jcgt.org/published/0005/03/03/>
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flat {
-    corner: Vec3A,
-    normal: Vec3A,
+    pub(in crate::path) corner: Vec3A,
+    pub(in crate::path) normal: Vec3A,
     /// The dual basis: `first_dual . first_edge = 1`, `first_dual . second_edge = 0`, and the other way round.
-    first_dual: Vec3A,
-    second_dual: Vec3A,
+    pub(in crate::path) first_dual: Vec3A,
+    pub(in crate::path) second_dual: Vec3A,
     /// How far outside `[0, 1]` rounding may find the coordinates of a hit.
-    slack: [f32; 2],
+    pub(in crate::path) slack: [f32; 2],
     /// 1 for a triangle, 0 for a parallelogram: with it `s + slant * t <= 1` and `t + slant * s <= 1` hold
     /// inside either.
-    slant: f32,
+    pub(in crate::path) slant: f32,
     first_edge: Vec3A,
     second_edge: Vec3A,
+    /// How far inside the edges points are kept: so far that a ray from there cannot miss a neighbour at the edge.
+    inset: [f32; 2],
     margin: f32,
     area: f32,
 }
@@ -86,6 +88,7 @@ impl Flat {
         // The point is rounded twice, the normal and the ray's way back to the plane a few times more.
         let margin = gamma(8) * normal.abs().dot(extent);
         let slack = [first_dual, second_dual].map(|dual| gamma(4) * dual.abs().dot(extent));
+        let inset = slack.map(|slack| (4.0 * slack).min(0.25));
         let area = squared.sqrt() * if slant == 0.0 { 1.0 } else { 0.5 };
         let usable = squared > 0.0
             && (corner + first_edge + second_edge).is_finite()
@@ -100,6 +103,7 @@ impl Flat {
             slant,
             first_edge,
             second_edge,
+            inset,
             margin,
             area: single(area),
         })
@@ -125,6 +129,7 @@ impl Flat {
             first_dual: self.second_dual,
             second_dual: self.first_dual,
             slack: [self.slack[1], self.slack[0]],
+            inset: [self.inset[1], self.inset[0]],
             ..self
         }
     }
@@ -173,10 +178,12 @@ impl Shape for Flat {
     #[inline]
     fn surface(&self, ray: &Ray, distance: f32) -> Surface {
         let inside = ray.direction * distance - (self.corner - ray.origin);
-        self.at(
-            inside.dot(self.first_dual).clamp(0.0, 1.0),
-            inside.dot(self.second_dual).clamp(0.0, 1.0),
-        )
+        let [low_s, low_t] = self.inset;
+        let s = inside.dot(self.first_dual).clamp(low_s, 1.0 - low_s);
+        let t = inside.dot(self.second_dual).clamp(low_t, 1.0 - low_t);
+        // Past the slanted edge of a triangle: back towards the corner.
+        let beyond = (self.slant * (s + t) + low_s.max(low_t)).max(1.0);
+        self.at(s / beyond, t / beyond)
     }
 
     fn area(&self) -> f32 {

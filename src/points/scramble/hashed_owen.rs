@@ -34,8 +34,14 @@ impl BinaryScramble for HashedOwen {
 
     #[inline]
     fn scramble(&self, key: u64, digits: u64) -> u64 {
-        laine_karras(digits.reverse_bits(), key).reverse_bits()
+        scramble(digits, key)
     }
+}
+
+/// The nested scramble that `key`, which must be well mixed, selects.
+#[inline]
+pub(in crate::points) fn scramble(digits: u64, key: u64) -> u64 {
+    laine_karras(digits.reverse_bits(), key).reverse_bits()
 }
 
 /// A keyed bijection of words in which a bit depends on no higher bit. The key must be well mixed.

@@ -2,7 +2,7 @@
 
 use super::digit_permutation::permute_nonzero;
 use super::{BinaryScramble, DigitScramble};
-use crate::hash::{hash, mix};
+use crate::hash::{GOLDEN, hash, mix};
 
 /// Nested uniform scrambling: every digit is permuted by a random permutation that is chosen by all the digits
 /// before it.[^owen]
@@ -32,37 +32,45 @@ pub struct Owen {
     pub seed: u64,
 }
 
-/// Binary digits that share one hash: the 63 nodes of a tree of this height fit into one word.
-const LEVELS: u32 = 6;
-
 impl BinaryScramble for Owen {
     fn seed(&self) -> u64 {
         self.seed
     }
 
-    /// A node of the tree of digits is a string of digits, and its permutation is one bit: to flip or not. The
-    /// bits of the nodes below a string of `6 k` digits, down to `6 k + 5`, are those of one hash of the
-    /// string, numbered as a heap: the root is 1, and the children of `n` are `2 n` and `2 n + 1`.
     #[inline]
     fn scramble(&self, key: u64, digits: u64) -> u64 {
-        let mut flips = 0;
-        let mut level = 0;
-        // 54 digits, one more than a coordinate has: with those that follow it would be 60.
-        while level < 54 {
-            // The digits before, and a one that tells how many they are.
-            let prefix = (digits >> 1 | 1 << 63) >> (63 - level);
-            let nodes = mix(key ^ prefix.wrapping_mul(0x9e37_79b9_7f4a_7c15));
-            let below = digits << level;
-            let mut step = 0;
-            while step < LEVELS {
-                let node = (1 << step) | ((below >> 1) >> (63 - step));
-                flips |= ((nodes >> node) & 1) << (63 - level - step);
-                step += 1;
-            }
-            level += LEVELS;
-        }
-        digits ^ flips
+        // 54 digits, one more than a coordinate has. Written out, so that many are computed side by side.
+        digits
+            ^ six_flips::<0>(key, digits)
+            ^ six_flips::<6>(key, digits)
+            ^ six_flips::<12>(key, digits)
+            ^ six_flips::<18>(key, digits)
+            ^ six_flips::<24>(key, digits)
+            ^ six_flips::<30>(key, digits)
+            ^ six_flips::<36>(key, digits)
+            ^ six_flips::<42>(key, digits)
+            ^ six_flips::<48>(key, digits)
     }
+}
+
+/// Which of the six binary digits after the first `LEVEL` are flipped, in their places.
+///
+/// A node of the tree of digits is a string of digits, and its permutation is one bit: to flip or not. The 63 nodes
+/// from a string of `LEVEL` digits to those five digits longer have the bits of one hash of the string. They are
+/// numbered as a heap: the root is 1, and the children of `n` are `2 n` and `2 n + 1`.
+#[inline(always)]
+fn six_flips<const LEVEL: u32>(key: u64, digits: u64) -> u64 {
+    // The digits before, and those with the next six, after a one that tells how many they are.
+    let before = (digits >> 1 | 1 << 63) >> (63 - LEVEL);
+    let nodes = mix(key ^ before.wrapping_mul(GOLDEN));
+    let node = (digits << LEVEL >> 58) | 1 << 6;
+    let flips = (nodes >> (node >> 6) & 1) << 5
+        | (nodes >> (node >> 5) & 1) << 4
+        | (nodes >> (node >> 4) & 1) << 3
+        | (nodes >> (node >> 3) & 1) << 2
+        | (nodes >> (node >> 2) & 1) << 1
+        | (nodes >> (node >> 1) & 1);
+    flips << (58 - LEVEL)
 }
 
 impl DigitScramble for Owen {

@@ -1,6 +1,6 @@
 //! From an integrand to an estimate of its integral.
 
-use crate::{Incomplete, Integrand, Value};
+use crate::{Estimate, Incomplete, Integrand, Value};
 
 /// Estimates the integral of an integrand over the unit cube.
 ///
@@ -10,7 +10,7 @@ use crate::{Incomplete, Integrand, Value};
 /// # Writing your own
 ///
 /// ```
-/// use estimand::{Estimate, Estimator, Integrand, Moments, Outcome, Value};
+/// use estimand::{ErrorBar, Estimate, Estimator, Integrand, Moments, Outcome, Value};
 /// use estimand::points::{Independent, PointSet};
 ///
 /// /// The mean over `count` independent points and their mirror images.
@@ -34,6 +34,7 @@ use crate::{Incomplete, Integrand, Value};
 ///         }
 ///         let mut estimate = Estimate::new(moments.mean(), 2 * self.count);
 ///         estimate.std_error = moments.std_error();
+///         estimate.error_bar = ErrorBar::SampleVariance;
 ///         Ok(estimate)
 ///     }
 /// }
@@ -73,35 +74,4 @@ pub enum NonFinite {
     ///
     /// The mean is then the mean over the part of the domain where the integrand is finite.
     Reject,
-}
-
-/// An estimate of an integral.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[must_use]
-#[non_exhaustive]
-pub struct Estimate<V> {
-    /// The estimate of the integral.
-    pub mean: V,
-    /// The standard error of the mean, where the estimator has one to give.
-    pub std_error: Option<V>,
-    /// How many evaluations of the integrand were asked for.
-    pub requested: u64,
-    /// How many evaluations were made: another number than `requested` where the points come only in some
-    /// numbers, as those of a grid do. Rejected ones are among them.
-    pub used: u64,
-    /// How many of the values were not finite and left out.
-    pub rejected: u64,
-}
-
-impl<V> Estimate<V> {
-    /// An estimate without an error bar, from `evaluations` evaluations.
-    pub fn new(mean: V, evaluations: u64) -> Self {
-        Self {
-            mean,
-            std_error: None,
-            requested: evaluations,
-            used: evaluations,
-            rejected: 0,
-        }
-    }
 }

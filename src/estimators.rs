@@ -11,7 +11,9 @@
 mod average;
 mod monte_carlo;
 mod replicated;
+mod until;
 
 pub use average::Average;
 pub use monte_carlo::MonteCarlo;
 pub use replicated::Replicated;
+pub use until::{Progress, Until};

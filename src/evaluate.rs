@@ -2,22 +2,22 @@
 
 use core::ops::{ControlFlow, Range};
 
-use crate::moments::Block;
+use crate::block::Block;
 use crate::points::PointSet;
-use crate::{
-    Cursor, Error, Estimate, Incomplete, Integrand, Moments, NonFinite, Sampler, Value, reduce,
-};
+use crate::tally::{Open, Piece, Tally};
+use crate::{Cursor, Error, Integrand, NonFinite, Sampler, Value, reduce};
 
 /// Points per block. A block is the unit of parallel work and of seeding; its length is a constant, so
 /// that the sums do not depend on the machine.
-const BLOCK: u64 = 1024;
+pub(crate) const BLOCK: u64 = 1024;
 
 /// Where the points of an estimate come from.
 pub(crate) trait Source: Sync {
     /// Hands the points of `indices`, which lie in one block, to `visit` in order.
     ///
-    /// About `dimensions` coordinates of each will be read.
-    fn points(&self, indices: Range<u64>, dimensions: u32, visit: &mut impl Visit);
+    /// About `dimensions` coordinates of each will be read; `drawn` were read by the points of the block
+    /// before these.
+    fn points(&self, indices: Range<u64>, drawn: u64, dimensions: u32, visit: &mut impl Visit);
 }
 
 /// What is done at each point.
@@ -29,7 +29,7 @@ pub(crate) trait Visit {
 const AHEAD: usize = 4096;
 
 impl<P: PointSet> Source for P {
-    fn points(&self, indices: Range<u64>, dimensions: u32, visit: &mut impl Visit) {
+    fn points(&self, indices: Range<u64>, _: u64, dimensions: u32, visit: &mut impl Visit) {
         let dimensions = dimensions.min(self.dimensions());
         let width = dimensions as usize;
         let (mut index, end) = (indices.start, indices.end);
@@ -61,100 +61,86 @@ impl<P: PointSet> Source for P {
     }
 }
 
-/// What the points of one source have given.
-#[derive(Clone, Copy)]
-pub(crate) struct Tally<V> {
-    pub(crate) moments: Moments<V>,
-    pub(crate) rejected: u64,
+/// What becomes of a last block that is not complete.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Tail {
+    /// It stays open, to be gone on with.
+    Open,
+    /// It is closed: nothing will follow.
+    Closed,
 }
 
-impl<V: Value> Tally<V> {
-    const EMPTY: Self = Self {
-        moments: Moments::new(),
-        rejected: 0,
-    };
-
-    /// How many evaluations were made.
-    pub(crate) fn used(&self) -> u64 {
-        self.moments.count() + self.rejected
-    }
-}
-
-/// An evaluation that stopped: why, and the tallies of all points before.
-pub(crate) struct Stopped<V> {
-    pub(crate) reason: Error,
-    pub(crate) tallies: Vec<Tally<V>>,
-}
-
-/// The result of an estimator: `estimate` of the tallies, or of those there were before the stop. It
-/// returns `None` if the tallies hold no value.
-pub(crate) fn conclude<V: Value>(
-    outcome: Result<Vec<Tally<V>>, Stopped<V>>,
-    estimate: impl Fn(&[Tally<V>]) -> Option<Estimate<V>>,
-) -> Result<Estimate<V>, Incomplete<V>> {
-    match outcome {
-        Ok(tallies) => estimate(&tallies).ok_or_else(|| {
-            Error::NothingLeft {
-                rejected: tallies.iter().map(|tally| tally.rejected).sum(),
-            }
-            .into()
-        }),
-        Err(Stopped { reason, tallies }) => Err(Incomplete {
-            reason,
-            so_far: estimate(&tallies).map(Box::new),
-        }),
-    }
-}
-
-/// Evaluates `integrand` at the points `0..count` of every source; one tally a source.
+/// Takes every source from where its tally is to the number of points in `counts`.
+///
+/// Points that were evaluated before are not evaluated again, and the tallies are to the bit those of an
+/// evaluation at once. A value that is not finite stops it, unless such values are to be rejected; the
+/// tallies then hold some of the points, all before the offending one of its source among them.
 pub(crate) fn evaluate<I: Integrand, S: Source>(
     sources: &[S],
-    count: u64,
+    tallies: &mut [Tally<Wide<I>>],
+    counts: &[u64],
+    tail: Tail,
     integrand: &I,
     policy: NonFinite,
-) -> Result<Vec<Tally<Wide<I>>>, Stopped<Wide<I>>> {
-    let blocks = count.div_ceil(BLOCK);
-    let mut tallies = vec![Tally::EMPTY; sources.len()];
-    let mut taken = 0;
-    let place = |job: u64| usize::try_from(job / blocks).expect("a source is in memory");
-    let outcome = reduce::in_order(
-        blocks * sources.len() as u64,
-        |job| {
-            let first = job % blocks * BLOCK;
-            let indices = first..count.min(first + BLOCK);
-            block(&sources[place(job)], indices, integrand, policy)
-        },
-        |(tally, offender): (Tally<_>, Option<Offender>)| {
-            let source = place(taken);
-            taken += 1;
-            tallies[source].moments.merge(tally.moments);
-            tallies[source].rejected += tally.rejected;
-            offender.map_or(Ok(()), |offender| Err((source, offender)))
-        },
-    );
-    match outcome {
-        Ok(()) => Ok(tallies),
-        Err((
-            source,
-            Offender {
-                index,
-                coordinates,
-                value,
-            },
-        )) => {
-            tallies.truncate(source + 1);
-            let reason = Error::NonFinite {
-                index,
-                replicate: source as u64,
-                coordinates,
-                value,
-            };
-            Err(Stopped { reason, tallies })
+) -> Result<(), Error> {
+    // The jobs of a source follow one another; `ends` are the numbers of jobs up to and with it.
+    let mut ends = Vec::with_capacity(sources.len());
+    let mut jobs = 0;
+    for (tally, &count) in tallies.iter().zip(counts) {
+        let used = tally.used();
+        if count > used {
+            jobs += count.div_ceil(BLOCK) - used / BLOCK;
         }
+        ends.push(jobs);
     }
+    let begun: Vec<_> = tallies
+        .iter()
+        .map(|tally| (tally.used(), tally.open))
+        .collect();
+    let mut taken = 0;
+    let mut source = 0;
+    reduce::in_order(
+        jobs,
+        |job| {
+            let source = ends.partition_point(|&end| end <= job);
+            let before = if source == 0 { 0 } else { ends[source - 1] };
+            let (used, open) = begun[source];
+            let first = (used / BLOCK + job - before) * BLOCK;
+            let indices = first.max(used)..counts[source].min(first + BLOCK);
+            let open = open.filter(|_| job == before);
+            block(&sources[source], indices, open, tail, integrand, policy)
+        },
+        |part| {
+            while ends[source] <= taken {
+                source += 1;
+            }
+            taken += 1;
+            match part {
+                Part::Closed(piece) => tallies[source].close(piece),
+                Part::Open(open) => tallies[source].open = Some(open),
+                Part::Stopped(open, offender) => {
+                    tallies[source].open = (open.used() > 0).then_some(open);
+                    return Err(Error::NonFinite {
+                        index: offender.index,
+                        replicate: source as u64,
+                        coordinates: offender.coordinates,
+                        value: offender.value,
+                    });
+                }
+            }
+            Ok(())
+        },
+    )
 }
 
 pub(crate) type Wide<I> = <<I as Integrand>::Value as Value>::Wide;
+
+/// What the evaluation of a block, or of a part of it, has given.
+enum Part<V> {
+    Closed(Piece<V>),
+    Open(Open<V>),
+    Stopped(Open<V>, Box<Offender>),
+}
 
 /// A point where the integrand was not finite.
 struct Offender {
@@ -166,43 +152,49 @@ struct Offender {
 fn block<I: Integrand, S: Source>(
     source: &S,
     indices: Range<u64>,
+    open: Option<Open<Wide<I>>>,
+    tail: Tail,
     integrand: &I,
     policy: NonFinite,
-) -> (Tally<Wide<I>>, Option<Offender>) {
-    let mut fast = Fast {
-        integrand,
-        block: Block::EMPTY,
-    };
-    source.points(indices.clone(), integrand.dimensions(), &mut fast);
-    match fast.block.moments() {
-        Some(moments) => (
-            Tally {
-                moments,
-                rejected: 0,
-            },
-            None,
-        ),
-        None => careful(source, indices, integrand, policy),
+) -> Part<Wide<I>> {
+    let complete = tail == Tail::Closed || indices.end.is_multiple_of(BLOCK);
+    if complete && open.is_none() {
+        let mut fast = Fast {
+            integrand,
+            block: Block::EMPTY,
+        };
+        source.points(indices.clone(), 0, integrand.dimensions(), &mut fast);
+        if let Some(piece) = fast.block.piece() {
+            return Part::Closed(piece);
+        }
+    }
+    match careful(source, indices, open, integrand, policy) {
+        (open, Some(offender)) => Part::Stopped(open, offender),
+        (open, None) if complete => Part::Closed(open.piece()),
+        (open, None) => Part::Open(open),
     }
 }
 
-/// Evaluates a block again, value by value: names what is not finite, and sums what has no ordinary
-/// squares.
+/// Evaluates a block value by value: names what is not finite, sums what has no ordinary squares, and
+/// keeps what it takes to go on.
 #[cold]
 fn careful<I: Integrand, S: Source>(
     source: &S,
     indices: Range<u64>,
+    open: Option<Open<Wide<I>>>,
     integrand: &I,
     policy: NonFinite,
-) -> (Tally<Wide<I>>, Option<Offender>) {
+) -> (Open<Wide<I>>, Option<Box<Offender>>) {
     let mut careful = Careful {
         integrand,
         policy,
-        tally: Tally::EMPTY,
+        open: open.unwrap_or(Open::EMPTY),
+        coordinates: Vec::new(),
         offender: None,
     };
-    source.points(indices, integrand.dimensions(), &mut careful);
-    (careful.tally, careful.offender)
+    let drawn = careful.open.drawn;
+    source.points(indices, drawn, integrand.dimensions(), &mut careful);
+    (careful.open, careful.offender)
 }
 
 struct Fast<'a, I: Integrand> {
@@ -221,43 +213,41 @@ impl<I: Integrand> Visit for Fast<'_, I> {
 struct Careful<'a, I: Integrand> {
     integrand: &'a I,
     policy: NonFinite,
-    tally: Tally<Wide<I>>,
-    offender: Option<Offender>,
+    open: Open<Wide<I>>,
+    coordinates: Vec<f64>,
+    offender: Option<Box<Offender>>,
 }
 
 impl<I: Integrand> Visit for Careful<'_, I> {
     fn point<S: Sampler>(&mut self, index: u64, u: S) -> ControlFlow<()> {
+        self.coordinates.clear();
         let mut u = Recorder {
             inner: u,
-            coordinates: Vec::new(),
+            coordinates: &mut self.coordinates,
         };
         let value = self.integrand.evaluate(&mut u).widen();
-        if value.is_finite() {
-            self.tally.moments.push(value);
-        } else if self.policy == NonFinite::Reject {
-            self.tally.rejected += 1;
-        } else {
+        if !value.is_finite() && self.policy == NonFinite::Fail {
             let mut components = Vec::new();
             value.for_each(|component| components.push(component));
-            let coordinates = u.coordinates;
-            self.offender = Some(Offender {
+            self.offender = Some(Box::new(Offender {
                 index,
-                coordinates,
+                coordinates: core::mem::take(&mut self.coordinates),
                 value: components,
-            });
+            }));
             return ControlFlow::Break(());
         }
+        self.open.push(value, self.coordinates.len() as u64);
         ControlFlow::Continue(())
     }
 }
 
 /// Remembers the coordinates that were read.
-struct Recorder<S> {
+struct Recorder<'a, S> {
     inner: S,
-    coordinates: Vec<f64>,
+    coordinates: &'a mut Vec<f64>,
 }
 
-impl<S: Sampler> Sampler for Recorder<S> {
+impl<S: Sampler> Sampler for Recorder<'_, S> {
     fn next_1d(&mut self) -> f64 {
         let coordinate = self.inner.next_1d();
         self.coordinates.push(coordinate);

@@ -20,7 +20,7 @@ pub const fn mix(word: u64) -> u64 {
 ///
 /// [^steele]: Steele, Guy; Lea, Doug; Flood, Christine (2014). *Fast Splittable Pseudorandom Number
 ///     Generators*. <https://doi.org/10.1145/2660193.2660195>
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+pub(crate) const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// A word that depends on every bit of `key` and of `word`. For a fixed `key` it is a bijection of `word`.
 ///

@@ -1,25 +1,134 @@
 //! Monte Carlo and quasi-Monte Carlo integration of any integrand, with errors one can trust.
+//!
+//! An integral with no closed form is a mean over random points. This crate makes the points, from independent
+//! ones to scrambled nets; takes the mean, the same bits on any number of threads; and says how far off it
+//! is, or that it cannot know. A light path is an integrand like any other: the feature `path` adds a thin path
+//! tracer that is written against the public traits alone.
+//!
+//! # Three examples
+//!
+//! An integral, its integrand a closure on the unit square:
+//!
+//! ```
+//! use estimand::{Estimator, MonteCarlo, cube};
+//!
+//! let f = cube(|[x, y]| (x * y).exp());
+//! let estimate = MonteCarlo::new(1 << 16, 1).estimate(&f)?;
+//! assert!((estimate.mean - 1.317_902).abs() < 4.0 * estimate.std_error.unwrap());
+//! # Ok::<(), estimand::Error>(())
+//! ```
+//!
+//! The same with better points. Points that are not independent have no sample variance to speak of: the
+//! error bar comes from independent randomisations.
+//!
+//! ```
+//! use estimand::{Estimator, Replicated, cube, points::Stratified};
+//!
+//! let f = cube(|[x, y]| (x * y).exp());
+//! let grid = |seed| Stratified::new(1 << 12, 2, seed).expect("a positive count");
+//! let estimate = Replicated::new(16, 1 << 12, grid).estimate(&f)?;
+//! assert!((estimate.mean - 1.317_902_151).abs() < 4.0 * estimate.std_error.unwrap());
+//! assert!(estimate.std_error.unwrap() < 1e-4);
+//! # Ok::<(), estimand::Error>(())
+//! ```
+//!
+//! An integrand that draws as many coordinates as it needs: an infinite sum, ended by Russian roulette without
+//! a bias.
+//!
+//! ```
+//! use estimand::{Estimator, Integrand, MonteCarlo, Sampler, integrands::Survival};
+//!
+//! /// The sum over n of 1 / 2^n, each term the mean of a product of n uniform numbers.
+//! struct Series;
+//!
+//! impl Integrand for Series {
+//!     type Value = f64;
+//!     fn evaluate<S: Sampler>(&self, u: &mut S) -> f64 {
+//!         let survival = Survival::new(0.7).expect("a probability");
+//!         let (mut sum, mut term) = (0.0, 1.0);
+//!         loop {
+//!             sum += term;
+//!             match survival.play(u.next_1d()) {
+//!                 Some(weight) => term *= u.next_1d() * weight,
+//!                 None => return sum,
+//!             }
+//!         }
+//!     }
+//! }
+//!
+//! let estimate = MonteCarlo::new(1 << 16, 1).estimate(&Series)?;
+//! assert!((estimate.mean - 2.0).abs() < 4.0 * estimate.std_error.unwrap());
+//! # Ok::<(), estimand::Error>(())
+//! ```
+//!
+//! # The map: three axes
+//!
+//! | axis | trait | what there is |
+//! |---|---|---|
+//! | where the points come from | [`PointSet`](points::PointSet) | [`points`] |
+//! | what is evaluated | [`Integrand`] | [`cube`], adaptors in [`integrands`] |
+//! | where the error bar comes from | [`Estimator`] | [`estimators`] |
+//!
+//! Every combination works, and your own file on one axis works with all of the other two. Beside them:
+//! [`discrepancy`] measures how even a set of points is, [`hash`] is the randomness that needs no state, [`Moments`]
+//! adds up values without losing digits.
+//!
+//! # Limits
+//!
+//! - Sampling is for many dimensions, kinks, jumps and odd domains. A smooth integrand in up to some five
+//!   dimensions belongs to deterministic cubature, which is orders of magnitude more exact.
+//! - Coordinates are multiples of 2^-53 or coarser: a peak narrower than that is not seen by any point.
+//! - An estimate is only as good as its finite variance: where the square of the integrand has no integral,
+//!   error bars are too small, whatever their kind.
+//! - The integrand must be pure; a closure that counts its calls may see some points twice.
+//!
+//! # Features
+//!
+//! | feature | what it adds | depends on |
+//! |---|---|---|
+//! | `parallel` (default) | all threads of rayon's current pool; the same bits | `rayon` |
+//! | `simd` (default) | vector code chosen at run time; the same bits | `pulp` |
+//! | `glam` | glam's vectors as values | `glam` |
+//! | `serde` | saving and restoring estimates | `serde` |
+//! | `path` | the path tracer | `glam`, `obvhs`, `exr`, `image` |
+//!
+//! Without features the crate depends on `rand` alone.
 
+mod block;
 mod error;
+mod estimate;
 mod estimator;
 mod evaluate;
 mod integrand;
 mod moments;
+mod progressive;
+mod quantile;
 mod reduce;
 mod sampler;
+mod tallied;
+mod tally;
 mod value;
+mod warning;
 
+pub mod convergence;
 pub mod discrepancy;
 pub mod estimators;
 pub mod hash;
 pub mod integrands;
+#[cfg(feature = "path")]
+pub mod path;
 pub mod points;
+pub mod warp;
 
 pub use error::{Error, Incomplete};
-pub use estimator::{Estimate, Estimator, NonFinite, Outcome};
+pub use estimate::{ErrorBar, Estimate, Interval, Stop};
+pub use estimator::{Estimator, NonFinite, Outcome};
 pub use estimators::{Average, MonteCarlo, Replicated};
 pub use integrand::{Cube, Integrand, cube};
 pub use moments::Moments;
+pub use progressive::Progressive;
 pub use reduce::each;
 pub use sampler::{Cursor, Sampler, Stream};
+pub use tallied::Tallies;
 pub use value::Value;
+pub use warning::Warning;

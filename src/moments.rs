@@ -27,6 +27,7 @@ use crate::Value;
 /// [^chan]: Chan, Tony; Golub, Gene; LeVeque, Randall (1983). *Algorithms for Computing the Sample
 ///     Variance*. <https://doi.org/10.1080/00031305.1983.10483115>
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Moments<V> {
     count: u64,
     mean: V,
@@ -42,6 +43,17 @@ impl<V: Value> Moments<V> {
             mean: V::ZERO,
             root: V::ZERO,
         }
+    }
+
+    /// `root` is the root of the sum of squared deviations from `mean`.
+    #[inline]
+    pub(crate) fn from_parts(count: u64, mean: V, root: V) -> Self {
+        Self { count, mean, root }
+    }
+
+    /// The root of the sum of squared deviations from the mean.
+    pub(crate) fn root(&self) -> V {
+        self.root
     }
 
     /// Adds one value.
@@ -131,61 +143,6 @@ impl<V: Value> FromIterator<V> for Moments<V> {
         let mut moments = Self::new();
         moments.extend(values);
         moments
-    }
-}
-
-/// Sums of one short block of values, each relative to the block's first: two additions and one
-/// multiplication a component, no division.
-///
-/// The shift costs few digits because it is one of the values: with `m` the sum of squared deviations
-/// from the mean, `(first - mean)^2 <= m`, hence `squares = m + n (first - mean)^2 <= (n + 1) m`, and
-/// for a block of 1024 the subtraction in [`moments`](Self::moments) loses at most three of sixteen
-/// digits.
-#[derive(Clone, Copy)]
-pub(crate) struct Block<V> {
-    count: u64,
-    first: V,
-    sum: V,
-    squares: V,
-}
-
-impl<V: Value> Block<V> {
-    pub(crate) const EMPTY: Self = Self {
-        count: 0,
-        first: V::ZERO,
-        sum: V::ZERO,
-        squares: V::ZERO,
-    };
-
-    #[inline]
-    pub(crate) fn push(&mut self, value: V) {
-        if self.count == 0 {
-            self.first = value;
-        }
-        self.count += 1;
-        let shifted = value.zip(self.first, |x, first| x - first);
-        self.sum = self.sum.zip(shifted, |sum, d| sum + d);
-        self.squares = self.squares.zip(shifted, |squares, d| squares + d * d);
-    }
-
-    /// The moments of the block, or `None` if plain arithmetic does not do: a value that is not finite,
-    /// or deviations whose squares leave the range of `f64`.
-    #[inline]
-    pub(crate) fn moments(self) -> Option<Moments<V>> {
-        const ORDINARY: core::ops::Range<f64> = 1e-250..1e300;
-        let count = self.count as f64;
-        let mut ordinary = self.first.is_finite();
-        let mean = self.first.zip(self.sum, |first, sum| first + sum / count);
-        let root = self.squares.zip(self.sum, |squares, sum| {
-            let constant = squares == 0.0 && sum == 0.0;
-            ordinary &= constant || ORDINARY.contains(&squares);
-            (squares - sum * (sum / count)).max(0.0).sqrt()
-        });
-        ordinary.then_some(Moments {
-            count: self.count,
-            mean,
-            root,
-        })
     }
 }
 

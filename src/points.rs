@@ -9,13 +9,51 @@ use core::ops::Range;
 
 use crate::Cursor;
 
+mod block;
+mod blue_noise;
+mod digits;
+mod faure;
+mod folded;
+mod halton;
+mod hammersley;
 mod independent;
+mod kronecker;
+mod lattice;
+mod multi_jittered;
 mod n_rooks;
+mod orthogonal_array;
+mod padded;
+pub mod pixel;
+mod radical_inverse;
+mod rescrambled;
+mod scramble;
+mod shifted;
+mod sobol;
 mod stratified;
+mod van_der_corput;
 
+pub use blue_noise::{BlueNoise, BlueNoisePixel};
+pub use faure::Faure;
+pub use folded::Folded;
+pub use halton::Halton;
+pub use hammersley::Hammersley;
 pub use independent::Independent;
+pub use kronecker::Kronecker;
+pub use lattice::{Lattice, LatticeSequence};
+pub use multi_jittered::MultiJittered;
 pub use n_rooks::NRooks;
+pub use orthogonal_array::OrthogonalArray;
+pub use padded::Padded;
+pub use radical_inverse::radical_inverse;
+pub use rescrambled::Rescrambled;
+pub use scramble::{
+    BinaryScramble, Columns, DigitPermutation, DigitScramble, DigitalShift, HashedOwen,
+    LinearMatrix, Owen, Plain,
+};
+pub use shifted::Shifted;
+pub use sobol::{DIMENSIONS as SOBOL_DIMENSIONS, Sobol};
 pub use stratified::Stratified;
+pub use van_der_corput::VanDerCorput;
 
 /// A sequence, or a finite set, of points of the unit cube.
 ///
@@ -90,35 +128,50 @@ pub trait PointSet: Sync {
     }
 }
 
-impl<P: PointSet + ?Sized> PointSet for &P {
-    #[inline]
-    fn coordinate(&self, index: u64, dimension: u32) -> f64 {
-        (**self).coordinate(index, dimension)
-    }
+/// A pointer to a set is that set.
+macro_rules! pointer {
+    ($($pointer:ty),*) => {$(
+        impl<P: PointSet + ?Sized> PointSet for $pointer {
+            #[inline]
+            fn coordinate(&self, index: u64, dimension: u32) -> f64 {
+                (**self).coordinate(index, dimension)
+            }
 
-    fn size(&self) -> Option<u64> {
-        (**self).size()
-    }
+            fn size(&self) -> Option<u64> {
+                (**self).size()
+            }
 
-    fn dimensions(&self) -> u32 {
-        (**self).dimensions()
-    }
+            fn dimensions(&self) -> u32 {
+                (**self).dimensions()
+            }
 
-    fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
-        (**self).fill(first, dimensions, out);
-    }
+            fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+                (**self).fill(first, dimensions, out);
+            }
+        }
+    )*};
 }
+
+pointer!(&P, Box<P>);
 
 /// The rows of `out` that [`PointSet::fill`] writes, each with the index of its point.
 ///
 /// # Panics
 ///
 /// As [`PointSet::fill`] does.
-pub(crate) fn rows<'a>(
+fn rows<'a>(
     first: u64,
     dimensions: &Range<u32>,
     out: &'a mut [f64],
 ) -> impl Iterator<Item = (u64, &'a mut [f64])> {
+    check(first, dimensions, out);
+    (0..)
+        .zip(out.chunks_exact_mut(dimensions.len().max(1)))
+        .map(move |(row, out)| (first + row, out))
+}
+
+/// Refuses what [`PointSet::fill`] refuses.
+fn check(first: u64, dimensions: &Range<u32>, out: &[f64]) {
     let width = dimensions.len();
     assert!(
         out.is_empty() || out.len().is_multiple_of(width),
@@ -130,7 +183,4 @@ pub(crate) fn rows<'a>(
         count == 0 || first.checked_add(count - 1).is_some(),
         "fill: {count} points from index {first} on pass the last index"
     );
-    (0..)
-        .zip(out.chunks_exact_mut(width.max(1)))
-        .map(move |(row, out)| (first + row, out))
 }

@@ -1,8 +1,10 @@
 //! The mean over the points of one set, without an error bar.
 
-use crate::evaluate::{conclude, evaluate};
 use crate::points::PointSet;
-use crate::{Error, Estimate, Estimator, Integrand, NonFinite, Outcome};
+use crate::tallied::{Tallied, tallied};
+use crate::tally::Tally;
+use crate::warning::Warning;
+use crate::{Error, Estimate, NonFinite, Value};
 
 /// The mean over the first points of one point set; no error bar.
 ///
@@ -46,24 +48,47 @@ impl<P: PointSet> Average<P> {
     }
 }
 
-impl<P: PointSet> Estimator for Average<P> {
-    fn estimate<I: Integrand>(&self, integrand: &I) -> Outcome<I::Value> {
+impl<P: PointSet> Tallied for Average<P> {
+    type Source<'a>
+        = &'a P
+    where
+        P: 'a;
+
+    fn sources(&self) -> Result<Vec<&P>, Error> {
         if self.count == 0 {
-            return Err(Error::refused("count", "at least 1", 0).into());
+            return Err(Error::refused("count", "at least 1", 0));
         }
-        let count = self.points.size().unwrap_or(self.count);
-        conclude(
-            evaluate(&[&self.points], count, integrand, self.non_finite),
-            |tallies| {
-                let [tally] = tallies else { return None };
-                (tally.moments.count() > 0).then(|| Estimate {
-                    mean: tally.moments.mean(),
-                    std_error: None,
-                    requested: self.count,
-                    used: tally.used(),
-                    rejected: tally.rejected,
-                })
-            },
-        )
+        Ok(vec![&self.points])
     }
+
+    fn counts(&self, _: &[&P], evaluations: u64) -> Vec<u64> {
+        vec![whole(&self.points, evaluations)]
+    }
+
+    fn requested(&self) -> u64 {
+        self.count
+    }
+
+    fn policy(&self) -> NonFinite {
+        self.non_finite
+    }
+
+    fn summary<V: Value>(&self, tallies: &[Tally<V>]) -> Option<Estimate<V>> {
+        let [tally] = tallies else { return None };
+        let moments = tally.moments();
+        let rejected = tally.rejected();
+        (moments.count() > 0).then(|| Estimate {
+            requested: self.count,
+            rejected,
+            warnings: Warning::of_rejected(rejected),
+            ..Estimate::new(moments.mean(), tally.used())
+        })
+    }
+}
+
+tallied!([P: PointSet] Average<P>);
+
+/// How many points of `points` to take for `count`: all of a finite set.
+pub(super) fn whole(points: &impl PointSet, count: u64) -> u64 {
+    points.size().filter(|_| count > 0).unwrap_or(count)
 }

@@ -7,8 +7,11 @@ use core::ops::Range;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{Rng, SeedableRng};
 
-use crate::evaluate::{Source, Visit, conclude, evaluate};
-use crate::{Error, Estimate, Estimator, Integrand, NonFinite, Outcome, Stream, hash};
+use crate::evaluate::{BLOCK, Source, Visit};
+use crate::tallied::{Tallied, tallied};
+use crate::tally::Tally;
+use crate::warning::{Warning, diagnose};
+use crate::{Error, ErrorBar, Estimate, NonFinite, Sampler, Stream, Value, hash};
 
 /// The mean over independent uniform points, with the standard error of their sample variance.
 ///
@@ -80,30 +83,52 @@ impl<R> MonteCarlo<R> {
     }
 }
 
-impl<R: Rng + SeedableRng> Estimator for MonteCarlo<R> {
-    fn estimate<I: Integrand>(&self, integrand: &I) -> Outcome<I::Value> {
+impl<R: Rng + SeedableRng> Tallied for MonteCarlo<R> {
+    type Source<'a>
+        = Streams<R>
+    where
+        R: 'a;
+
+    fn sources(&self) -> Result<Vec<Streams<R>>, Error> {
         if self.count == 0 {
-            return Err(Error::refused("count", "at least 1", 0).into());
+            return Err(Error::refused("count", "at least 1", 0));
         }
-        let source = Streams {
-            seed: self.seed,
-            generator: self.generator,
-        };
-        conclude(
-            evaluate(&[source], self.count, integrand, self.non_finite),
-            |tallies| {
-                let [tally] = tallies else { return None };
-                (tally.moments.count() > 0).then(|| Estimate {
-                    mean: tally.moments.mean(),
-                    std_error: tally.moments.std_error(),
-                    requested: self.count,
-                    used: tally.used(),
-                    rejected: tally.rejected,
-                })
-            },
-        )
+        Ok(vec![Streams::new(self.seed)])
+    }
+
+    fn counts(&self, _: &[Streams<R>], evaluations: u64) -> Vec<u64> {
+        vec![evaluations]
+    }
+
+    fn requested(&self) -> u64 {
+        self.count
+    }
+
+    fn policy(&self) -> NonFinite {
+        self.non_finite
+    }
+
+    fn summary<V: Value>(&self, tallies: &[Tally<V>]) -> Option<Estimate<V>> {
+        let [tally] = tallies else { return None };
+        let moments = tally.moments();
+        let count = moments.count();
+        let rejected = tally.rejected();
+        let std_error = moments.std_error();
+        let mut warnings = diagnose(tally, std_error);
+        warnings.extend(Warning::of_sample(count));
+        warnings.extend(Warning::of_rejected(rejected));
+        (count > 0).then(|| Estimate {
+            std_error,
+            error_bar: ErrorBar::SampleVariance,
+            requested: self.count,
+            rejected,
+            warnings,
+            ..Estimate::new(moments.mean(), tally.used())
+        })
     }
 }
+
+tallied!([R: Rng + SeedableRng] MonteCarlo<R>);
 
 impl<R> fmt::Debug for MonteCarlo<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -124,14 +149,27 @@ impl<R> Clone for MonteCarlo<R> {
 impl<R> Copy for MonteCarlo<R> {}
 
 /// One generator a block, each seeded with all the bits it takes.
-struct Streams<R> {
+pub(crate) struct Streams<R> {
     seed: u64,
     generator: PhantomData<fn() -> R>,
 }
 
+impl<R> Streams<R> {
+    pub(super) const fn new(seed: u64) -> Self {
+        Self {
+            seed,
+            generator: PhantomData,
+        }
+    }
+}
+
 impl<R: Rng + SeedableRng> Source for Streams<R> {
-    fn points(&self, indices: Range<u64>, _: u32, visit: &mut impl Visit) {
-        let mut stream = Stream(seeded::<R>(hash::hash(self.seed, indices.start)));
+    fn points(&self, indices: Range<u64>, drawn: u64, _: u32, visit: &mut impl Visit) {
+        let block = indices.start / BLOCK * BLOCK;
+        let mut stream = Stream(seeded::<R>(hash::hash(self.seed, block)));
+        for _ in 0..drawn {
+            stream.next_1d();
+        }
         for index in indices {
             if visit.point(index, &mut stream).is_break() {
                 return;

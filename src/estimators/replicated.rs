@@ -2,9 +2,12 @@
 
 use core::fmt;
 
-use crate::evaluate::{Tally, conclude, evaluate};
+use super::average::whole;
 use crate::points::PointSet;
-use crate::{Error, Estimate, Estimator, Integrand, Moments, NonFinite, Outcome, Value, hash};
+use crate::tallied::{Tallied, tallied};
+use crate::tally::Tally;
+use crate::warning::{Warning, diagnose};
+use crate::{Error, ErrorBar, Estimate, Moments, NonFinite, Value, hash};
 
 /// The mean of several averages over independently randomised point sets, with the standard error of their
 /// spread.
@@ -69,55 +72,78 @@ impl<P: PointSet, F: Fn(u64) -> P> Replicated<F> {
     }
 }
 
-impl<P: PointSet, F: Fn(u64) -> P> Estimator for Replicated<F> {
-    fn estimate<I: Integrand>(&self, integrand: &I) -> Outcome<I::Value> {
+impl<P: PointSet, F: Fn(u64) -> P> Tallied for Replicated<F> {
+    type Source<'a>
+        = P
+    where
+        F: 'a;
+
+    fn sources(&self) -> Result<Vec<P>, Error> {
         if self.replicates < 2 {
-            return Err(
-                Error::refused("number of replicates", "at least 2", self.replicates).into(),
-            );
+            let domain = "at least 2";
+            return Err(Error::refused(
+                "number of replicates",
+                domain,
+                self.replicates,
+            ));
         }
         if self.count == 0 {
-            return Err(Error::refused("count", "at least 1", 0).into());
+            return Err(Error::refused("count", "at least 1", 0));
         }
         let sets: Vec<P> = (0..self.replicates)
             .map(|replicate| (self.points)(hash::hash(self.seed, replicate)))
             .collect();
         distinct(&sets)?;
-        let count = sets[0].size().unwrap_or(self.count);
-        conclude(
-            evaluate(&sets, count, integrand, self.non_finite),
-            |tallies| {
-                // A replicate that was cut short is worth less than the others: it counts only if it is all
-                // there is.
-                let whole: Vec<_> = tallies
-                    .iter()
-                    .filter(|tally| tally.used() == count)
-                    .collect();
-                let tallies = if whole.is_empty() {
-                    tallies.iter().collect()
-                } else {
-                    whole
-                };
-                summary(&tallies, self.replicates.saturating_mul(self.count))
-            },
-        )
+        Ok(sets)
+    }
+
+    fn counts(&self, sets: &[P], evaluations: u64) -> Vec<u64> {
+        let count = evaluations.div_ceil(self.replicates).min(self.count);
+        sets.iter().map(|set| whole(set, count)).collect()
+    }
+
+    fn requested(&self) -> u64 {
+        self.replicates.saturating_mul(self.count)
+    }
+
+    fn policy(&self) -> NonFinite {
+        self.non_finite
+    }
+
+    fn summary<V: Value>(&self, tallies: &[Tally<V>]) -> Option<Estimate<V>> {
+        // Replicates that were cut short are worth less than the others: they count only if they are all there
+        // is.
+        let most = tallies.iter().map(Tally::used).max()?;
+        let whole = tallies.iter().filter(|tally| tally.used() == most);
+        let means: Vec<V> = whole
+            .clone()
+            .map(|tally| *tally.moments())
+            .filter(|moments| moments.count() > 0)
+            .map(|moments| moments.mean())
+            .collect();
+        if means.is_empty() {
+            return None;
+        }
+        let moments: Moments<V> = means.iter().copied().collect();
+        let mut all = Tally::EMPTY;
+        whole.for_each(|tally| all.merge(tally));
+        let std_error = moments.std_error();
+        let mut warnings = diagnose(&all, std_error);
+        warnings.extend(Warning::of_replicates(moments.count()));
+        warnings.extend(Warning::of_rejected(all.rejected()));
+        Some(Estimate {
+            std_error,
+            error_bar: ErrorBar::Replicates,
+            replicates: means,
+            requested: self.requested(),
+            rejected: all.rejected(),
+            warnings,
+            ..Estimate::new(moments.mean(), all.used())
+        })
     }
 }
 
-fn summary<V: Value>(tallies: &[&Tally<V>], requested: u64) -> Option<Estimate<V>> {
-    let means: Moments<V> = tallies
-        .iter()
-        .filter(|tally| tally.moments.count() > 0)
-        .map(|tally| tally.moments.mean())
-        .collect();
-    (means.count() > 0).then(|| Estimate {
-        mean: means.mean(),
-        std_error: means.std_error(),
-        requested,
-        used: tallies.iter().map(|tally| tally.used()).sum(),
-        rejected: tallies.iter().map(|tally| tally.rejected).sum(),
-    })
-}
+tallied!([P: PointSet, F: Fn(u64) -> P] Replicated<F>);
 
 /// Refuses two replicates that begin with the same points.
 fn distinct<P: PointSet>(sets: &[P]) -> Result<(), Error> {

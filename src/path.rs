@@ -1,0 +1,63 @@
+//! A thin path tracer: rendering as one more integral.
+//!
+//! It is written against the public traits of this crate alone: a [`Pixel`] is an [`Integrand`](crate::Integrand), a picture
+//! is one [estimate](crate::Estimate) a pixel. So every point set and every estimator renders, those of others
+//! included.
+//!
+//! ```
+//! use estimand::{Average, MonteCarlo};
+//! use estimand::path::scenes;
+//! use estimand::points::{HashedOwen, Sobol};
+//!
+//! let view = scenes::cornell_box();
+//! let plain = view.render([16, 16], 1, |seed| MonteCarlo::new(64, seed))?;
+//! assert!(plain.std_error().is_some());
+//!
+//! let sobol = Sobol::new(32)?;
+//! let better = view.render([16, 16], 1, |seed| {
+//!     Average::new(sobol.clone().scrambled(HashedOwen { seed }), 64)
+//! })?;
+//! assert!((plain.mean() - better.mean()).length() < 0.03);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Map
+//!
+//! | | |
+//! |---|---|
+//! | [`View`] | scene, camera and paths: what a picture is taken of |
+//! | [`Scene`], [`Object`] | shapes, and what they do to light |
+//! | [`shape`], [`bsdf`], [`light`], [`sensor`] | one kind of shape, scattering, source and camera a file |
+//! | [`Paths::radiance`] | the rendering equation |
+//! | [`mis`] | weights of multiple importance sampling |
+//! | [`Image`] | pictures, their errors, their files |
+//! | [`scenes`] | the Cornell box and others, as `reference/scenes` has them for Mitsuba |
+//!
+//! # Limits
+//!
+//! - Geometry is in `f32`: coordinates are known to 6e-8 of themselves. Rays leave surfaces by a bound of the rounding
+//!   errors, which scales and moves with the scene; two surfaces nearer to one another than about 1e-6 of
+//!   their coordinates are not told apart. A scene may be of any size between 1e-10 and 1e10.
+//! - Colour is linear red, green and blue. No media, no textures, no spectra.
+//! - Boxes around many shapes come from the crate `obvhs`; up to 48 shapes are swept over instead.
+
+pub mod bsdf;
+mod color;
+mod frame;
+mod geometry;
+pub mod image;
+pub mod light;
+pub mod mis;
+mod radiance;
+mod ray;
+mod render;
+mod scene;
+pub mod scenes;
+pub mod sensor;
+pub mod shape;
+
+pub use image::Image;
+pub use radiance::Paths;
+pub use ray::{Ray, Surface, gamma};
+pub use render::{Pixel, Unfinished, View};
+pub use scene::{Object, Scene, Segment, Vertex};

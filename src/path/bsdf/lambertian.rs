@@ -1,0 +1,63 @@
+//! Ideally diffuse reflection.
+
+use core::f32::consts::FRAC_1_PI;
+
+use glam::Vec3A;
+
+use super::{Bsdf, Scattered, Scattering};
+use crate::path::color;
+use crate::path::frame::{Frame, cosine_density, cosine_hemisphere, singles};
+use crate::{Error, Sampler};
+
+/// Ideally diffuse reflection on both sides: the function is `albedo / pi` where both directions are on the same
+/// side.
+///
+/// Two coordinates draw a direction, with the density `cosine / pi`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lambertian {
+    albedo: Vec3A,
+}
+
+impl Lambertian {
+    /// The surface that reflects the fraction `albedo` of red, green and blue.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for a component outside `[0, 1]`.
+    pub fn new(albedo: [f32; 3]) -> Result<Self, Error> {
+        Ok(Self {
+            albedo: color::fraction("albedo", albedo)?,
+        })
+    }
+}
+
+impl Bsdf for Lambertian {
+    #[inline]
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    #[inline]
+    fn evaluate(&self, normal: Vec3A, out: Vec3A, into: Vec3A) -> Scattering {
+        let cosine = normal.dot(into);
+        if cosine * normal.dot(out) <= 0.0 {
+            return Scattering::NONE;
+        }
+        Scattering {
+            value: self.albedo * (FRAC_1_PI * cosine.abs()),
+            density: cosine_density(cosine.abs()),
+        }
+    }
+
+    #[inline]
+    fn sample<S: Sampler>(&self, normal: Vec3A, out: Vec3A, u: &mut S) -> Option<Scattered> {
+        let local = cosine_hemisphere(singles(u.next_2d()));
+        let normal = normal * 1.0_f32.copysign(normal.dot(out));
+        (local.z > 0.0).then(|| Scattered {
+            direction: Frame::around(normal).out(local),
+            weight: self.albedo,
+            density: cosine_density(local.z),
+            eta: 1.0,
+        })
+    }
+}

@@ -1,0 +1,107 @@
+//! Directions around a normal, and the maps of the square that draw them.
+
+use core::f32::consts::{FRAC_1_PI, FRAC_PI_4};
+
+use glam::Vec3A;
+
+/// A right-handed orthonormal basis.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::path) struct Frame {
+    tangent: Vec3A,
+    bitangent: Vec3A,
+    normal: Vec3A,
+}
+
+impl Frame {
+    /// A basis whose third vector is `normal`, of length 1.[^duff]
+    ///
+    /// [^duff]: Duff, Tom; et al. (2017). *Building an Orthonormal Basis, Revisited*.
+    ///     <https://jcgt.org/published/0006/01/01/>
+    #[inline]
+    pub(in crate::path) fn around(normal: Vec3A) -> Self {
+        let sign = 1.0_f32.copysign(normal.z);
+        let a = -1.0 / (sign + normal.z);
+        let b = normal.x * normal.y * a;
+        Self {
+            tangent: Vec3A::new(
+                1.0 + sign * normal.x * normal.x * a,
+                sign * b,
+                -sign * normal.x,
+            ),
+            bitangent: Vec3A::new(b, sign + normal.y * normal.y * a, -normal.y),
+            normal,
+        }
+    }
+
+    /// The vector with the given coordinates in this basis.
+    #[inline]
+    pub(in crate::path) fn out(&self, local: Vec3A) -> Vec3A {
+        self.tangent * local.x + self.bitangent * local.y + self.normal * local.z
+    }
+}
+
+/// A coordinate in `f32`, truncated where it would round to 1.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+pub(in crate::path) fn single(u: f64) -> f32 {
+    (u as f32).min(1.0 - 0.5 * f32::EPSILON)
+}
+
+/// Two coordinates as [`single`].
+#[inline]
+pub(in crate::path) fn singles([a, b]: [f64; 2]) -> [f32; 2] {
+    [single(a), single(b)]
+}
+
+/// Cosine and sine of an angle in `[-pi/4, pi/4]`, by the first terms of their series: the rest is below the
+/// rounding of `f32`.
+#[inline]
+fn eighth(angle: f32) -> [f32; 2] {
+    let x = angle * angle;
+    let cosine = 1.0 + x * (-0.5 + x * (1.0 / 24.0 + x * (-1.0 / 720.0 + x * (1.0 / 40320.0))));
+    let sine = angle * (1.0 + x * (-1.0 / 6.0 + x * (1.0 / 120.0 + x * (-1.0 / 5040.0))));
+    [cosine, sine]
+}
+
+/// Cosine and sine of `u` turns, `u` in `[0, 1)`.
+#[inline]
+pub(in crate::path) fn turn(u: f32) -> [f32; 2] {
+    let quarters = 4.0 * u;
+    let nearest = (quarters + 0.5).floor();
+    let [cosine, sine] = eighth((quarters - nearest) * (2.0 * FRAC_PI_4));
+    match nearest {
+        1.0 => [-sine, cosine],
+        2.0 => [-cosine, -sine],
+        3.0 => [sine, -cosine],
+        _ => [cosine, sine],
+    }
+}
+
+/// A direction of the upper hemisphere with density `cos / pi`: the square is mapped to the disk by
+/// concentric squares,[^shirley] the disk lifted to the hemisphere.[^malley]
+///
+/// [^shirley]: Shirley, Peter; Chiu, Kenneth (1997). *A Low Distortion Map Between Disk and Square*.
+///     <https://doi.org/10.1080/10867651.1997.10487479>
+/// [^malley]: Malley, Thomas (1988). *A Shading Method for Computer Generated Images*. Master's thesis,
+///     University of Utah.
+#[inline]
+pub(in crate::path) fn cosine_hemisphere([u, v]: [f32; 2]) -> Vec3A {
+    let (a, b) = (2.0 * u - 1.0, 2.0 * v - 1.0);
+    let wide = a.abs() > b.abs();
+    let (radius, other) = if wide { (a, b) } else { (b, a) };
+    // A radius of zero has `other` zero too.
+    let angle = FRAC_PI_4 * other / if radius == 0.0 { 1.0 } else { radius };
+    let [cosine, sine] = eighth(angle);
+    let (x, y) = if wide { (cosine, sine) } else { (sine, cosine) };
+    Vec3A::new(
+        radius * x,
+        radius * y,
+        (1.0 - radius * radius).max(0.0).sqrt(),
+    )
+}
+
+/// The density of [`cosine_hemisphere`] at a direction with this cosine.
+#[inline]
+pub(in crate::path) fn cosine_density(cosine: f32) -> f32 {
+    FRAC_1_PI * cosine
+}

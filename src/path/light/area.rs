@@ -1,0 +1,105 @@
+//! Shapes that emit light.
+
+use glam::Vec3A;
+
+use super::{Emission, Emitter, Illumination, Light};
+use crate::path::Surface;
+use crate::path::frame::singles;
+use crate::path::shape::Shape;
+use crate::{Error, Sampler};
+
+/// Shapes that emit light from their outer sides.
+///
+/// Two coordinates draw a point, however many shapes there are: the first also chooses the shape, in
+/// proportion to its power, and what is left of it is a coordinate again.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AreaLights {
+    emitters: Vec<Emitter>,
+    choices: Vec<Choice>,
+}
+
+/// The probability of an emitter, and the sum of those before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Choice {
+    probability: f64,
+    before: f64,
+}
+
+impl Choice {
+    /// A density given the choice, times the probability of the choice.
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+    fn times(self, density: f32) -> f32 {
+        self.probability as f32 * density
+    }
+}
+
+impl AreaLights {
+    /// Which emitter the coordinate chooses, and what is left of the coordinate.
+    #[inline]
+    fn choose(&self, u: f64) -> (usize, f64) {
+        let [_, rest @ ..] = &self.choices[..] else {
+            return (0, u);
+        };
+        let chosen = rest.iter().take_while(|choice| choice.before <= u).count();
+        let Choice {
+            probability,
+            before,
+        } = self.choices[chosen];
+        (chosen, ((u - before) / probability).clamp(0.0, 1.0))
+    }
+}
+
+impl Light for AreaLights {
+    fn new(emitters: Vec<Emitter>) -> Result<Self, Error> {
+        let power = |emitter: &Emitter| {
+            let radiance = emitter.radiance.as_dvec3();
+            f64::from(emitter.shape.area()) * radiance.element_sum()
+        };
+        let total: f64 = emitters.iter().map(power).sum();
+        if !(total > 0.0 && total.is_finite()) {
+            return Err(Error::refused(
+                "power of all lights together",
+                "positive and finite",
+                total,
+            ));
+        }
+        let choices = emitters
+            .iter()
+            .scan(0.0, |sum, emitter| {
+                let (before, probability) = (*sum, power(emitter) / total);
+                *sum += probability;
+                Some(Choice {
+                    probability,
+                    before,
+                })
+            })
+            .collect();
+        Ok(Self { emitters, choices })
+    }
+
+    #[inline]
+    fn sample<S: Sampler>(&self, from: Vec3A, u: &mut S) -> Option<Illumination> {
+        let [a, b] = u.next_2d();
+        let (chosen, a) = self.choose(a);
+        let Emitter { shape, radiance } = &self.emitters[chosen];
+        let surface = shape.sample(from, singles([a, b]));
+        let density = self.choices[chosen].times(shape.density(from, &surface));
+        let lit = surface.normal.dot(from - surface.point) > 0.0;
+        (lit && density > 0.0 && density < f32::MAX).then_some(Illumination {
+            surface,
+            radiance: *radiance,
+            density,
+        })
+    }
+
+    #[inline]
+    fn emitted(&self, emitter: u32, from: Vec3A, surface: &Surface) -> Emission {
+        let Emitter { shape, radiance } = &self.emitters[emitter as usize];
+        let lit = surface.normal.dot(from - surface.point) > 0.0;
+        Emission {
+            radiance: if lit { *radiance } else { Vec3A::ZERO },
+            density: self.choices[emitter as usize].times(shape.density(from, surface)),
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! The radiance loop.
+
+use glam::{Vec3, Vec3A};
+
+use super::bsdf::Bsdf;
+use super::light::{Environment, Light};
+use super::mis::power;
+use super::scene::{Scene, Segment};
+use super::{Ray, Vertex};
+use crate::integrands::Survival;
+use crate::{Error, Sampler};
+
+/// Which paths of light are followed.
+///
+/// By default all: paths end by Russian roulette, without bias, from their fifth segment on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Paths {
+    longest: u32,
+    roulette_from: u32,
+}
+
+impl Default for Paths {
+    fn default() -> Self {
+        Self {
+            longest: u32::MAX,
+            roulette_from: 5,
+        }
+    }
+}
+
+impl Paths {
+    /// Leaves out the light of paths of more than `segments` segments: 1 is what is seen directly, 2 adds what is lit
+    /// directly. The picture is darker then; that is the price of a fixed length, and not to be seen in
+    /// any error bar.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for 0.
+    pub fn longest(mut self, segments: u32) -> Result<Self, Error> {
+        if segments == 0 {
+            return Err(Error::refused("number of segments", "at least 1", segments));
+        }
+        self.longest = segments;
+        Ok(self)
+    }
+
+    /// Plays Russian roulette after every segment from this one on. The probability of survival is the largest
+    /// component of what the path still carries, and 0.95 at most; what refraction takes from it or
+    /// adds to it does not count, since the way out of the glass gives it back.
+    pub fn roulette_from(mut self, segment: u32) -> Self {
+        self.roulette_from = segment;
+        self
+    }
+
+    /// The radiance that arrives at the origin of `ray` from its direction: an estimate, whose mean over the
+    /// coordinates of `u` is the solution of the rendering equation.[^kajiya]
+    ///
+    /// The coordinates are read in this order. At every surface: two for a point of the lights, unless the
+    /// scene has none or the surface scatters to single directions only; for the next direction as many as the law of
+    /// scattering draws; from the fifth segment on one for Russian roulette.
+    ///
+    /// [^kajiya]: Kajiya, James (1986). *The Rendering Equation*. <https://doi.org/10.1145/15886.15902>
+    #[inline]
+    pub fn radiance<B: Bsdf, L: Light, E: Environment, S: Sampler>(
+        &self,
+        scene: &Scene<B, L, E>,
+        mut ray: Ray,
+        u: &mut S,
+    ) -> Vec3 {
+        let mut radiance = Vec3A::ZERO;
+        // What a unit of radiance at the end of the path adds to the pixel.
+        let mut throughput = Vec3A::ONE;
+        // The density with which the direction of the ray was drawn. The camera's is no choice.
+        let mut density = f32::INFINITY;
+        let mut eta = 1.0;
+        for segment in 1.. {
+            let Some(Vertex {
+                surface,
+                bsdf,
+                emitter,
+            }) = scene.meet(&ray)
+            else {
+                radiance += throughput * scene.environment().radiance(ray.direction);
+                break;
+            };
+            // Emitted light, met by a direction that was drawn at the surface before.
+            if let Some(emitter) = emitter {
+                let emission = scene.lights().emitted(emitter, ray.origin, &surface);
+                radiance += throughput * emission.radiance * power(density, emission.density);
+            }
+            if segment >= self.longest {
+                break;
+            }
+            // Next-event estimation: light met by drawing a point of the lights.
+            let out = -ray.direction;
+            if !bsdf.is_delta()
+                && let Some(light) = scene.lights().sample(surface.point, u)
+                && let Some(way) = Segment::between(&surface, &light.surface)
+            {
+                let scattering = bsdf.evaluate(surface.normal, out, way.ray.direction);
+                if scattering.density > 0.0 && !scene.occluded(&way) {
+                    let weight = power(light.density, scattering.density) / light.density;
+                    radiance += throughput * scattering.value * light.radiance * weight;
+                }
+            }
+            // All other light, by drawing a direction.
+            let Some(next) = bsdf.sample(surface.normal, out, u) else {
+                break;
+            };
+            throughput *= next.weight;
+            eta *= next.eta;
+            if segment >= self.roulette_from {
+                let carried = f64::from(throughput.max_element() * (eta * eta));
+                let Ok(survival) = Survival::new(carried.min(0.95)) else {
+                    break; // It carries nothing.
+                };
+                let Some(weight) = survival.play(u.next_1d()) else {
+                    break;
+                };
+                #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+                let weight = weight as f32;
+                throughput *= weight;
+            }
+            density = next.density;
+            ray = Ray {
+                origin: surface.leave(next.direction),
+                direction: next.direction,
+            };
+        }
+        radiance.into()
+    }
+}

@@ -1,0 +1,184 @@
+//! What is rendered.
+
+use glam::Vec3A;
+
+use super::bsdf::{Bsdf, Material};
+use super::color;
+use super::geometry::Geometry;
+use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment};
+use super::ray::{Ray, Surface, gamma};
+use super::shape::Primitive;
+use crate::Error;
+
+/// Shapes that scatter light alike, and perhaps emit it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object<B> {
+    shapes: Vec<Primitive>,
+    bsdf: B,
+    radiance: Vec3A,
+}
+
+impl<B> Object<B> {
+    /// Shapes that scatter light as `bsdf` says.
+    pub fn new(shapes: impl IntoIterator<Item = impl Into<Primitive>>, bsdf: impl Into<B>) -> Self {
+        Self {
+            shapes: shapes.into_iter().map(Into::into).collect(),
+            bsdf: bsdf.into(),
+            radiance: Vec3A::ZERO,
+        }
+    }
+
+    /// The same, emitting light from the outer sides: `radiance` in linear red, green and blue.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for a component that is negative or not finite.
+    pub fn emitting(mut self, radiance: [f32; 3]) -> Result<Self, Error> {
+        self.radiance = color::radiance(radiance)?;
+        Ok(self)
+    }
+}
+
+/// A scene: shapes, how they scatter light (`B`), which of them emit it (`L`) and what is around them (`E`).
+///
+/// A part that a scene lacks is a type without content, [`NoLight`](super::light::NoLight) or [`NoEnvironment`]; a scene
+/// of one law of scattering names it. What the type does not name costs no code, no memory and no coordinate.
+///
+/// ```
+/// use estimand::path::bsdf::Lambertian;
+/// use estimand::path::light::{Constant, NoLight};
+/// use estimand::path::shape::Sphere;
+/// use estimand::path::{Object, Scene};
+///
+/// let ball = Object::new([Sphere::new([0.0; 3], 1.0)?], Lambertian::new([0.5; 3])?);
+/// let scene: Scene<Lambertian, NoLight, _> = Scene::new(vec![ball], Constant::new([1.0; 3])?)?;
+/// # Ok::<(), estimand::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct Scene<B = Material, L = AreaLights, E = NoEnvironment> {
+    geometry: Geometry,
+    /// Of each shape.
+    owners: Vec<Owner>,
+    bsdfs: Vec<B>,
+    lights: L,
+    environment: E,
+}
+
+/// What belongs to a shape.
+#[derive(Clone, Copy, Debug)]
+struct Owner {
+    bsdf: u32,
+    emitter: u32,
+}
+
+/// The `emitter` of a shape that emits nothing.
+const DARK: u32 = u32::MAX;
+
+/// The point of a scene that a ray has met.
+#[derive(Clone, Copy, Debug)]
+pub struct Vertex<'a, B> {
+    /// The point of the surface.
+    pub surface: Surface,
+    /// How light is scattered there.
+    pub bsdf: &'a B,
+    /// Which emitter it belongs to, if any.
+    pub emitter: Option<u32>,
+}
+
+impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
+    /// The scene of some objects in an environment.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] if the lights are of a type for more or fewer of them, and for 2^32 shapes or more.
+    pub fn new(objects: Vec<Object<B>>, environment: E) -> Result<Self, Error> {
+        let count: usize = objects.iter().map(|object| object.shapes.len()).sum();
+        if u32::try_from(count).is_err() {
+            return Err(Error::refused("number of shapes", "below 2^32", count));
+        }
+        let (mut shapes, mut owners) = (Vec::new(), Vec::new());
+        let (mut bsdfs, mut emitters) = (Vec::new(), Vec::new());
+        for (bsdf, object) in (0..).zip(objects) {
+            bsdfs.push(object.bsdf);
+            for shape in object.shapes {
+                let emitter = if object.radiance == Vec3A::ZERO {
+                    DARK
+                } else {
+                    emitters.push(Emitter {
+                        shape,
+                        radiance: object.radiance,
+                    });
+                    u32::try_from(emitters.len() - 1).unwrap_or(DARK)
+                };
+                shapes.push(shape);
+                owners.push(Owner { bsdf, emitter });
+            }
+        }
+        Ok(Self {
+            geometry: Geometry::new(shapes),
+            owners,
+            bsdfs,
+            lights: L::new(emitters)?,
+            environment,
+        })
+    }
+}
+
+impl<B, L, E> Scene<B, L, E> {
+    /// Where the ray first meets a surface.
+    #[inline]
+    pub fn meet(&self, ray: &Ray) -> Option<Vertex<'_, B>> {
+        let hit = self.geometry.nearest(ray)?;
+        let owner = self.owners[hit.shape];
+        Some(Vertex {
+            surface: hit.surface,
+            bsdf: &self.bsdfs[owner.bsdf as usize],
+            emitter: (owner.emitter != DARK).then_some(owner.emitter),
+        })
+    }
+
+    /// The shapes that emit light.
+    #[inline]
+    pub fn lights(&self) -> &L {
+        &self.lights
+    }
+
+    /// What is around the shapes.
+    #[inline]
+    pub fn environment(&self) -> &E {
+        &self.environment
+    }
+
+    /// Whether any shape is in the way.
+    #[inline]
+    pub fn occluded(&self, segment: &Segment) -> bool {
+        self.geometry.occluded(&segment.ray, segment.length)
+    }
+}
+
+/// The way from one surface to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// The ray from a margin off the one surface.
+    pub ray: Ray,
+    /// How far it is to a margin off the other, less the rounding error of a distance.
+    pub length: f32,
+}
+
+impl Segment {
+    /// The way between two surfaces; `None` where they are not told apart.
+    #[inline]
+    pub fn between(here: &Surface, there: &Surface) -> Option<Self> {
+        let toward = there.point - here.point;
+        let origin = here.leave(toward);
+        let way = there.leave(-toward) - origin;
+        let length = way.length();
+        (length > 0.0).then(|| Self {
+            ray: Ray {
+                origin,
+                direction: way / length,
+            },
+            length: length * (1.0 - gamma(8)),
+        })
+    }
+}

@@ -1,0 +1,122 @@
+//! What there is to be hit: one shape a file.
+//!
+//! | shape | outer side |
+//! |---|---|
+//! | [`Flat::triangle`] | where its corners run counter-clockwise |
+//! | [`Flat::parallelogram`] | that of `first_edge x second_edge` |
+//! | [`cuboid`]: six parallelograms | outside |
+//! | [`Sphere`] | outside |
+
+mod cuboid;
+mod flat;
+mod sphere;
+
+use glam::Vec3A;
+
+use super::{Ray, Surface};
+
+pub use cuboid::cuboid;
+pub use flat::Flat;
+pub use sphere::Sphere;
+
+/// A surface that rays can hit and whose points can be drawn.
+pub trait Shape {
+    /// The corners of an axis-aligned box around the shape.
+    fn bounds(&self) -> [Vec3A; 2];
+
+    /// The distance, in `(0, limit)`, at which the ray first meets the shape.
+    fn intersect(&self, ray: &Ray, limit: f32) -> Option<f32>;
+
+    /// The point of the surface at a `distance` that [`intersect`](Self::intersect) has returned for the ray.
+    fn surface(&self, ray: &Ray, distance: f32) -> Surface;
+
+    /// The area of the surface.
+    fn area(&self) -> f32;
+
+    /// A point of the surface, drawn from the coordinates `u` in `[0, 1)` so as to light the point `from` well.
+    fn sample(&self, from: Vec3A, u: [f32; 2]) -> Surface;
+
+    /// The density, per solid angle seen from `from`, with which [`sample`](Self::sample) draws the point of
+    /// `surface`: positive, and [`f32::MAX`] at most, which stands for a point seen edge-on.
+    fn density(&self, from: Vec3A, surface: &Surface) -> f32;
+}
+
+/// Any of the shapes of this module.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Primitive {
+    /// A triangle or a parallelogram.
+    Flat(Flat),
+    /// A sphere.
+    Sphere(Sphere),
+}
+
+impl From<Flat> for Primitive {
+    fn from(flat: Flat) -> Self {
+        Self::Flat(flat)
+    }
+}
+
+impl From<Sphere> for Primitive {
+    fn from(sphere: Sphere) -> Self {
+        Self::Sphere(sphere)
+    }
+}
+
+impl Shape for Primitive {
+    fn bounds(&self) -> [Vec3A; 2] {
+        match self {
+            Self::Flat(flat) => flat.bounds(),
+            Self::Sphere(sphere) => sphere.bounds(),
+        }
+    }
+
+    #[inline]
+    fn intersect(&self, ray: &Ray, limit: f32) -> Option<f32> {
+        match self {
+            Self::Flat(flat) => flat.intersect(ray, limit),
+            Self::Sphere(sphere) => sphere.intersect(ray, limit),
+        }
+    }
+
+    #[inline]
+    fn surface(&self, ray: &Ray, distance: f32) -> Surface {
+        match self {
+            Self::Flat(flat) => flat.surface(ray, distance),
+            Self::Sphere(sphere) => sphere.surface(ray, distance),
+        }
+    }
+
+    fn area(&self) -> f32 {
+        match self {
+            Self::Flat(flat) => flat.area(),
+            Self::Sphere(sphere) => sphere.area(),
+        }
+    }
+
+    #[inline]
+    fn sample(&self, from: Vec3A, u: [f32; 2]) -> Surface {
+        match self {
+            Self::Flat(flat) => flat.sample(from, u),
+            Self::Sphere(sphere) => sphere.sample(from, u),
+        }
+    }
+
+    #[inline]
+    fn density(&self, from: Vec3A, surface: &Surface) -> f32 {
+        match self {
+            Self::Flat(flat) => flat.density(from, surface),
+            Self::Sphere(sphere) => sphere.density(from, surface),
+        }
+    }
+}
+
+/// The density per solid angle, seen from `from`, of a point drawn uniformly from `area`: the area measure times
+/// the squared distance, over the cosine.
+#[inline]
+fn density_of_area(from: Vec3A, surface: &Surface, area: f32) -> f32 {
+    let offset = surface.point - from;
+    let squared = offset.length_squared();
+    let density = squared * squared.sqrt() / (surface.normal.dot(offset).abs() * area);
+    // Also where it is NaN, as it is for a point seen from itself.
+    density.min(f32::MAX)
+}

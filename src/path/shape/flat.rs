@@ -1,0 +1,216 @@
+//! Triangles and parallelograms.
+
+use glam::Vec3A;
+
+use super::{Shape, density_of_area};
+use crate::Error;
+use crate::path::ray::{Ray, Surface, gamma};
+
+/// A triangle or a parallelogram: `corner + s * first_edge + t * second_edge` with `s, t` in `[0, 1]`, and
+/// `s + t <= 1` for a triangle.
+///
+/// A ray finds `s` and `t` as the coordinates of its hit in the basis dual to the edges.[^baldwin] Hits
+/// count up to the bound of their rounding error outside the edges, so that no ray slips between two neighbours.
+///
+/// [^baldwin]: Baldwin, Doug; Weber, Michael (2016). *Fast Ray-Triangle Intersections by Coordinate
+///     Transformation*. <https://jcgt.org/published/0005/03/03/>
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flat {
+    pub(in crate::path) corner: Vec3A,
+    pub(in crate::path) normal: Vec3A,
+    /// The dual basis: `first_dual . first_edge = 1`, `first_dual . second_edge = 0`, and the other way round.
+    pub(in crate::path) first_dual: Vec3A,
+    pub(in crate::path) second_dual: Vec3A,
+    /// How far outside `[0, 1]` rounding may find the coordinates of a hit.
+    pub(in crate::path) slack: [f32; 2],
+    /// 1 for a triangle, 0 for a parallelogram: with it `s + slant * t <= 1` and `t + slant * s <= 1` hold
+    /// inside either.
+    pub(in crate::path) slant: f32,
+    first_edge: Vec3A,
+    second_edge: Vec3A,
+    /// How far inside the edges points are kept: so far that a ray from there cannot miss a neighbour at the edge.
+    inset: [f32; 2],
+    margin: f32,
+    area: f32,
+}
+
+impl Flat {
+    /// The parallelogram with a corner and the two edges from it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for coordinates that are not finite and for edges that span no area.
+    pub fn parallelogram(
+        corner: [f32; 3],
+        first_edge: [f32; 3],
+        second_edge: [f32; 3],
+    ) -> Result<Self, Error> {
+        Self::new(
+            Vec3A::from(corner),
+            Vec3A::from(first_edge),
+            Vec3A::from(second_edge),
+            0.0,
+        )
+        .ok_or_else(|| {
+            Error::refused(
+                "parallelogram",
+                "finite and of some area",
+                format_args!("{corner:?} + {first_edge:?}, {second_edge:?}"),
+            )
+        })
+    }
+
+    /// The triangle with the given corners, counter-clockwise when seen from outside.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for coordinates that are not finite and for corners that span no area.
+    pub fn triangle(corners: [[f32; 3]; 3]) -> Result<Self, Error> {
+        let [a, b, c] = corners.map(Vec3A::from);
+        Self::new(a, b - a, c - a, 1.0).ok_or_else(|| {
+            Error::refused(
+                "triangle",
+                "finite and of some area",
+                format_args!("{corners:?}"),
+            )
+        })
+    }
+
+    fn new(corner: Vec3A, first_edge: Vec3A, second_edge: Vec3A, slant: f32) -> Option<Self> {
+        // In f64, so that the normal and the duals are rounded once only.
+        let [first, second] = [first_edge, second_edge].map(|edge| edge.as_dvec3());
+        let cross = first.cross(second);
+        let squared = cross.length_squared();
+        let normal = (cross / squared.sqrt()).as_vec3a();
+        let first_dual = (second.cross(cross) / squared).as_vec3a();
+        let second_dual = (cross.cross(first) / squared).as_vec3a();
+        let extent = corner.abs() + first_edge.abs() + second_edge.abs();
+        // The point is rounded twice, the normal and the ray's way back to the plane a few times more.
+        let margin = gamma(8) * normal.abs().dot(extent);
+        let slack = [first_dual, second_dual].map(|dual| gamma(4) * dual.abs().dot(extent));
+        let inset = slack.map(|slack| (4.0 * slack).min(0.25));
+        let area = squared.sqrt() * if slant == 0.0 { 1.0 } else { 0.5 };
+        let usable = squared > 0.0
+            && (corner + first_edge + second_edge).is_finite()
+            && first_dual.is_finite()
+            && second_dual.is_finite();
+        usable.then_some(Self {
+            corner,
+            normal,
+            first_dual,
+            second_dual,
+            slack,
+            slant,
+            first_edge,
+            second_edge,
+            inset,
+            margin,
+            area: single(area),
+        })
+    }
+
+    /// The point with the coordinates `s` and `t` along the edges.
+    #[inline]
+    fn at(&self, s: f32, t: f32) -> Surface {
+        Surface {
+            point: self.corner + (self.first_edge * s + self.second_edge * t),
+            normal: self.normal,
+            margin: self.margin,
+        }
+    }
+
+    /// The same points with the outer side on the other side.
+    #[must_use]
+    pub fn turned(self) -> Self {
+        Self {
+            normal: -self.normal,
+            first_edge: self.second_edge,
+            second_edge: self.first_edge,
+            first_dual: self.second_dual,
+            second_dual: self.first_dual,
+            slack: [self.slack[1], self.slack[0]],
+            inset: [self.inset[1], self.inset[0]],
+            ..self
+        }
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+fn single(x: f64) -> f32 {
+    x as f32
+}
+
+impl Shape for Flat {
+    fn bounds(&self) -> [Vec3A; 2] {
+        let opposite = if self.slant == 0.0 {
+            self.corner + (self.first_edge + self.second_edge)
+        } else {
+            self.corner
+        };
+        let corners = [
+            self.corner + self.first_edge,
+            self.corner + self.second_edge,
+            opposite,
+        ];
+        corners
+            .iter()
+            .fold([self.corner; 2], |[low, high], &corner| {
+                [low.min(corner), high.max(corner)]
+            })
+    }
+
+    #[inline]
+    fn intersect(&self, ray: &Ray, limit: f32) -> Option<f32> {
+        let offset = self.corner - ray.origin;
+        let distance = offset.dot(self.normal) / ray.direction.dot(self.normal);
+        let inside = ray.direction * distance - offset;
+        let s = inside.dot(self.first_dual);
+        let t = inside.dot(self.second_dual);
+        let hit = distance > 0.0
+            && distance < limit
+            && s >= -self.slack[0]
+            && t >= -self.slack[1]
+            && s + self.slant * t <= 1.0 + self.slack[0]
+            && t + self.slant * s <= 1.0 + self.slack[1];
+        hit.then_some(distance)
+    }
+
+    #[inline]
+    fn surface(&self, ray: &Ray, distance: f32) -> Surface {
+        let inside = ray.direction * distance - (self.corner - ray.origin);
+        let [low_s, low_t] = self.inset;
+        let s = inside.dot(self.first_dual).clamp(low_s, 1.0 - low_s);
+        let t = inside.dot(self.second_dual).clamp(low_t, 1.0 - low_t);
+        // Past the slanted edge of a triangle: back towards the corner.
+        let beyond = (self.slant * (s + t) + low_s.max(low_t)).max(1.0);
+        self.at(s / beyond, t / beyond)
+    }
+
+    fn area(&self) -> f32 {
+        self.area
+    }
+
+    /// Uniform on the area. A triangle takes the half of the square folded onto the other, without a
+    /// square root.[^heitz]
+    ///
+    /// [^heitz]: Heitz, Eric (2019). *A Low-Distortion Map Between Triangle and Square*.
+    ///     <https://hal.science/hal-02073696>
+    #[inline]
+    fn sample(&self, _: Vec3A, [a, b]: [f32; 2]) -> Surface {
+        if self.slant == 0.0 {
+            return self.at(a, b);
+        }
+        if b > a {
+            let s = 0.5 * a;
+            self.at(s, b - s)
+        } else {
+            let t = 0.5 * b;
+            self.at(a - t, t)
+        }
+    }
+
+    #[inline]
+    fn density(&self, from: Vec3A, surface: &Surface) -> f32 {
+        density_of_area(from, surface, self.area)
+    }
+}

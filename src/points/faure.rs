@@ -1,0 +1,164 @@
+//! Faure's points.
+
+use super::digits::Base;
+use super::halton::primes_up_to;
+use super::scramble::{DigitScramble, Plain};
+use super::{Independent, PointSet};
+use crate::Error;
+
+/// Faure's points: a digital sequence in the smallest prime base that is no less than the number of
+/// dimensions.[^faure]
+///
+/// The first `base^m` points, and every aligned block of as many, have one point in every elementary interval of volume
+/// `base^-m`, in all dimensions at once: the best such balance there is. It shows from `base^2` points or so
+/// on. Use it in few dimensions, with powers of the base as counts, or for comparison; a scrambled [`Sobol`](super::Sobol) is
+/// the better choice nearly everywhere else.
+///
+/// Dimensions past those asked for are independent hashed coordinates, selected by the seed of the scramble. Coordinates
+/// are within 2^-51 of the exact fraction, relatively, for every index. A coordinate takes of the order of the squared
+/// number of digits of the index; no tables.
+///
+/// ```
+/// use estimand::points::{Faure, PointSet};
+///
+/// let points = Faure::new(3)?;
+/// assert_eq!(points.base(), 3);
+/// let third: Vec<f64> = (0..3).map(|dimension| points.coordinate(3, dimension)).collect();
+/// assert_eq!(third, [1.0 / 9.0, 4.0 / 9.0, 7.0 / 9.0]);
+/// # Ok::<(), estimand::Error>(())
+/// ```
+///
+/// [^faure]: Faure, Henri (1982). *Discrépance de suites associées à un système de numération (en dimension s)*.
+///     <https://doi.org/10.4064/aa-41-4-337-351>
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct Faure<S = Plain> {
+    base: Base,
+    dimensions: u32,
+    scramble: S,
+}
+
+impl Faure {
+    /// The plain points in `dimensions` dimensions.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for no dimensions, or more than 65536.
+    pub fn new(dimensions: u32) -> Result<Self, Error> {
+        if !(1..=1 << 16).contains(&dimensions) {
+            return Err(Error::refused(
+                "number of Faure dimensions",
+                "1 to 65536",
+                dimensions,
+            ));
+        }
+        // There is a prime between a number and its double (Chebyshev).
+        let base = primes_up_to(2 * dimensions)
+            .find(|&prime| prime >= dimensions)
+            .expect("2 is a prime up to 2, and larger numbers have one before their double");
+        Ok(Self {
+            base: Base::new(base),
+            dimensions,
+            scramble: Plain,
+        })
+    }
+}
+
+impl<S> Faure<S> {
+    /// The base: powers of it are the counts to take.
+    pub fn base(&self) -> u32 {
+        self.base.base()
+    }
+
+    /// The same points, randomised by `scramble` instead.
+    pub fn scrambled<T: DigitScramble>(self, scramble: T) -> Faure<T> {
+        Faure {
+            base: self.base,
+            dimensions: self.dimensions,
+            scramble,
+        }
+    }
+}
+
+impl<S: DigitScramble> PointSet for Faure<S> {
+    #[inline]
+    fn coordinate(&self, index: u64, dimension: u32) -> f64 {
+        if dimension >= self.dimensions {
+            return Independent::past(self.scramble.seed()).coordinate(index, dimension);
+        }
+        let base = u64::from(self.base());
+        let mut digits = [0; 64];
+        let mut count = 0;
+        let mut rest = index;
+        while rest != 0 {
+            digits[count] = rest % base;
+            count += 1;
+            rest /= base;
+        }
+        let digits = &mut digits[..count];
+        translate(digits, dimension.into(), base);
+        let key = self.scramble.key(dimension);
+        self.base
+            .fraction(&self.scramble, key, digits.iter().copied())
+    }
+
+    fn dimensions(&self) -> u32 {
+        self.dimensions
+    }
+}
+
+/// The coefficients of the polynomial `x -> p(x + by)` modulo `base`, from those of `p`: this is what Pascal's matrix to
+/// the power `by` does to the digits. By repeated synthetic division.
+fn translate(coefficients: &mut [u64], by: u64, base: u64) {
+    if by == 0 {
+        return;
+    }
+    for lowest in 0..coefficients.len().saturating_sub(1) {
+        for place in (lowest..coefficients.len() - 1).rev() {
+            coefficients[place] = (coefficients[place] + by * coefficients[place + 1]) % base;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::points::Sobol;
+
+    #[test]
+    fn the_smallest_sufficient_prime_is_the_base() {
+        for (dimensions, base) in [
+            (1, 2),
+            (2, 2),
+            (3, 3),
+            (4, 5),
+            (8, 11),
+            (30, 31),
+            (65_536, 65_537),
+        ] {
+            assert_eq!(Faure::new(dimensions).unwrap().base(), base);
+        }
+        assert!(Faure::new(0).is_err() && Faure::new(65_537).is_err());
+    }
+
+    #[test]
+    fn in_two_dimensions_the_points_are_those_of_sobol() {
+        let (faure, sobol) = (Faure::new(2).unwrap(), Sobol::new(2).unwrap());
+        for index in (0..300).chain([u64::from(u32::MAX), (1 << 53) - 1]) {
+            for dimension in 0..2 {
+                assert_eq!(
+                    faure.coordinate(index, dimension),
+                    sobol.coordinate(index, dimension)
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn translation_is_a_power_of_pascals_matrix() {
+        // (x + 2)^3 = x^3 + 6 x^2 + 12 x + 8, modulo 7.
+        let mut cube = [0, 0, 0, 1];
+        translate(&mut cube, 2, 7);
+        assert_eq!(cube, [1, 5, 6, 1]);
+    }
+}

@@ -1,0 +1,323 @@
+//! Halton's points.
+
+use core::ops::Range;
+use std::sync::Arc;
+
+use super::block::{Block, vectorised};
+use super::digits::Base;
+use super::scramble::{DigitScramble, Plain};
+use super::{Independent, PointSet, rows};
+use crate::Error;
+
+/// Halton's points: the coordinate in dimension `d` is the radical inverse of the index in the base that is the prime
+/// number `d`, counted from 0.[^halton]
+///
+/// A sequence: any count is good, any first index too. Use it when the count is not known beforehand or no power
+/// of two, in few dimensions; in many its large bases need long to fill the space, and plain coordinates are
+/// correlated until then, visibly from about the eighth dimension on: scramble them, with
+/// [`DigitPermutation`](super::DigitPermutation) say. [`Sobol`](super::Sobol) is the better one where powers of two
+/// will do.
+///
+/// In up to 65536 dimensions. Dimensions past those asked for are independent hashed
+/// coordinates, selected by the seed of the scramble.
+///
+/// # Indices
+///
+/// Coordinates are within 2^-51 of the exact fraction, relatively, for every index; points are distinct as long as
+/// the fractions are further apart than that. [`radical_inverse`](super::radical_inverse) is exact to
+/// the last bit.
+///
+/// # Memory
+///
+/// 40 bytes for a dimension, shared by all clones and scrambled ones.
+///
+/// ```
+/// use estimand::points::{Halton, PointSet};
+///
+/// let points = Halton::new(2)?;
+/// let coordinates = [points.coordinate(1, 0), points.coordinate(1, 1)];
+/// assert_eq!(coordinates, [1.0 / 2.0, 1.0 / 3.0]);
+/// # Ok::<(), estimand::Error>(())
+/// ```
+///
+/// [^halton]: Halton, John (1960). *On the efficiency of certain quasi-random sequences of points in evaluating
+///     multi-dimensional integrals*. <https://doi.org/10.1007/BF01386213>
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct Halton<S = Plain> {
+    bases: Arc<[Base]>,
+    first: u64,
+    scramble: S,
+}
+
+/// How many dimensions there are at most.
+const DIMENSIONS: u32 = 1 << 16;
+
+impl Halton {
+    /// The plain points in `dimensions` dimensions.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for no dimensions, or more than 65536.
+    pub fn new(dimensions: u32) -> Result<Self, Error> {
+        if !(1..=DIMENSIONS).contains(&dimensions) {
+            return Err(Error::refused(
+                "number of Halton dimensions",
+                "1 to 65536",
+                dimensions,
+            ));
+        }
+        Ok(Self {
+            bases: primes(dimensions).into_iter().map(Base::new).collect(),
+            first: 0,
+            scramble: Plain,
+        })
+    }
+}
+
+impl<S> Halton<S> {
+    /// The same points, randomised by `scramble` instead.
+    pub fn scrambled<T: DigitScramble>(self, scramble: T) -> Halton<T> {
+        Halton {
+            bases: self.bases,
+            first: self.first,
+            scramble,
+        }
+    }
+
+    /// The sequence from the point `first` on: index 0 is that point. Past [`u64::MAX`] it starts again.
+    pub fn starting_at(self, first: u64) -> Self {
+        Self { first, ..self }
+    }
+}
+
+impl<S: DigitScramble> Halton<S> {
+    /// What selects the randomisation.
+    pub(super) fn seed(&self) -> u64 {
+        self.scramble.seed()
+    }
+}
+
+impl<S: DigitScramble> PointSet for Halton<S> {
+    #[inline]
+    fn coordinate(&self, index: u64, dimension: u32) -> f64 {
+        let index = index.wrapping_add(self.first);
+        match self.bases.get(dimension as usize) {
+            Some(base) => base.inverse(&self.scramble, self.scramble.key(dimension), index),
+            None => Independent::past(self.seed()).coordinate(index, dimension),
+        }
+    }
+
+    fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+        // A wrapped first index would break the runs of indices.
+        let contiguous = self
+            .first
+            .checked_add(first)
+            .is_some_and(|first| first.checked_add(out.len() as u64).is_some());
+        if S::NESTED || !contiguous {
+            for (index, row) in rows(first, &dimensions, out) {
+                for (dimension, coordinate) in dimensions.clone().zip(row) {
+                    *coordinate = self.coordinate(index, dimension);
+                }
+            }
+            return;
+        }
+        let first = self.first + first;
+        let mut block = Block::new(first, dimensions, out, self.dimensions(), self.seed());
+        let inside = block.dimensions.clone();
+        let mut room = Room::new();
+        for (tile, start) in inside
+            .clone()
+            .step_by(TOGETHER)
+            .zip((0..).step_by(TOGETHER))
+        {
+            let count = TOGETHER.min((inside.end - tile) as usize);
+            vectorised(
+                #[inline(always)]
+                || self.fill_tile(&mut block, &mut room, tile, start..start + count),
+            );
+        }
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "at most 2^16 bases")]
+    fn dimensions(&self) -> u32 {
+        self.bases.len() as u32
+    }
+}
+
+/// Dimensions that are computed before their coordinates are put in their places.
+const TOGETHER: usize = 4;
+
+/// Points that are.
+const POINTS: usize = 256;
+
+/// Memory of [`Halton::fill_tile`].
+struct Room {
+    tables: [Vec<f64>; TOGETHER],
+    columns: [[f64; POINTS]; TOGETHER],
+}
+
+impl Room {
+    fn new() -> Self {
+        Self {
+            tables: [const { Vec::new() }; TOGETHER],
+            columns: [[0.0; POINTS]; TOGETHER],
+        }
+    }
+}
+
+impl<S: DigitScramble> Halton<S> {
+    /// Writes the coordinates in the dimensions from `dimension` on into `columns` of the block, [`TOGETHER`] at most.
+    #[inline(always)]
+    fn fill_tile(
+        &self,
+        block: &mut Block<'_>,
+        room: &mut Room,
+        dimension: u32,
+        columns: Range<usize>,
+    ) {
+        let count = block.count();
+        let bases = &self.bases[dimension as usize..][..columns.len()];
+        let keyed = || {
+            bases
+                .iter()
+                .zip((dimension..).map(|d| self.scramble.key(d)))
+        };
+        // A table pays if most of it is used.
+        let pays = |base: &Base| base.power() <= 2 * count;
+        for ((base, key), table) in keyed().zip(&mut room.tables) {
+            if pays(base) {
+                base.table(&self.scramble, key, table);
+            }
+        }
+        let mut index = block.first;
+        for out in block.out.chunks_mut(POINTS * block.width) {
+            let points = out.len() / block.width;
+            for (((base, key), table), column) in keyed().zip(&room.tables).zip(&mut room.columns) {
+                let column = &mut column[..points];
+                if pays(base) {
+                    base.inverses(&self.scramble, key, table, index, column);
+                } else {
+                    for (index, u) in (index..).zip(column) {
+                        *u = base.inverse(&self.scramble, key, index);
+                    }
+                }
+            }
+            let rows = out.chunks_exact_mut(block.width);
+            if columns.len() == TOGETHER {
+                let [a, b, c, d] = &room.columns;
+                for ((((row, a), b), c), d) in rows.zip(a).zip(b).zip(c).zip(d) {
+                    row[columns.start..][..TOGETHER].copy_from_slice(&[*a, *b, *c, *d]);
+                }
+            } else {
+                for (point, row) in rows.enumerate() {
+                    for (u, column) in row[columns.clone()].iter_mut().zip(&room.columns) {
+                        *u = column[point];
+                    }
+                }
+            }
+            index += points as u64;
+        }
+    }
+}
+
+/// The first `count` prime numbers.
+fn primes(count: u32) -> Vec<u32> {
+    // The n-th prime is below n (ln n + ln ln n) for n > 5 (Rosser and Schoenfeld 1962).
+    let n = f64::from(count.max(6));
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a positive number below 2^20"
+    )]
+    let limit = (n * (n.ln() + n.ln().ln())) as u32 + 1;
+    primes_up_to(limit).take(count as usize).collect()
+}
+
+/// The prime numbers up to `limit`, in order, by the sieve of Eratosthenes.
+pub(super) fn primes_up_to(limit: u32) -> impl Iterator<Item = u32> {
+    let length = limit as usize + 1;
+    let mut composite = vec![false; length];
+    (2..=limit).zip(2..).filter_map(move |(number, place)| {
+        if composite[place] {
+            return None;
+        }
+        let multiples = (place * place..length).step_by(place);
+        multiples.for_each(|multiple| composite[multiple] = true);
+        Some(number)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::points::{DigitPermutation, DigitalShift, Owen, radical_inverse};
+
+    #[test]
+    fn primes_are_the_primes() {
+        assert_eq!(primes(10), [2, 3, 5, 7, 11, 13, 17, 19, 23, 29]);
+        // The primes number 1000, 1024 and 10000 (OEIS A000040).
+        let many = primes(10_000);
+        assert_eq!((many[999], many[1023], many[9999]), (7919, 8161, 104_729));
+        assert_eq!(primes(DIMENSIONS).len(), 1 << 16);
+    }
+
+    #[test]
+    fn plain_points_are_radical_inverses() {
+        let points = Halton::new(1024).unwrap();
+        let bases = primes(1024);
+        for index in (0..3000).chain([u64::from(u32::MAX), 1 << 32, 1 << 53, u64::MAX]) {
+            for dimension in (0..40).chain((40..1024).step_by(41)) {
+                let exact = radical_inverse(bases[dimension as usize], index);
+                let u = points.coordinate(index, dimension);
+                assert!((0.0..1.0).contains(&u));
+                assert!(
+                    (u - exact).abs() <= 2.0 * f64::EPSILON * exact,
+                    "{index} {dimension}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn any_first_index() {
+        let points = Halton::new(3).unwrap();
+        let later = points.clone().starting_at(1000);
+        for dimension in 0..5 {
+            assert_eq!(
+                later.coordinate(7, dimension),
+                points.coordinate(1007, dimension)
+            );
+        }
+    }
+
+    #[test]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the numbers of strata are small"
+    )]
+    fn scrambles_keep_the_strata_of_one_dimension() {
+        fn check(points: &impl PointSet) {
+            for (dimension, base) in (0..12).zip(primes(12)) {
+                for strata in [base, base * base] {
+                    let mut seen: Vec<u64> = (0..strata)
+                        .map(|index| points.coordinate(index.into(), dimension))
+                        .map(|u| (u * f64::from(strata)).floor() as u64)
+                        .collect();
+                    seen.sort_unstable();
+                    assert!(seen.into_iter().eq(0..u64::from(strata)), "{base}");
+                }
+            }
+        }
+        let points = Halton::new(12).unwrap();
+        check(&points.clone().scrambled(DigitalShift { seed: 3 }));
+        check(&points.clone().scrambled(DigitPermutation { seed: 3 }));
+        check(&points.clone().scrambled(Owen { seed: 3 }));
+    }
+
+    #[test]
+    fn too_many_dimensions_are_refused() {
+        assert!(Halton::new(0).is_err());
+        assert!(Halton::new(65_537).is_err());
+    }
+}

@@ -1,0 +1,200 @@
+//! Why an error bar may be wrong, seen from the values themselves.
+
+use core::fmt;
+
+use crate::Value;
+use crate::tally::Tally;
+
+/// Why an error bar may be wrong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Warning {
+    /// In some component all values are alike, so that the error bar is zero: either the integrand is constant,
+    /// or all points missed what matters.
+    NoSpread,
+    /// A single value makes up a large share of the variance, as it does when the integrand is a narrow peak, a
+    /// rare event or has no variance at all. The error may be many times the error bar.
+    FewValues {
+        /// The largest share of one value in the sum of squared deviations.
+        share: f64,
+    },
+    /// The largest values fall off so slowly that the variance may be infinite. Intervals hold the integral
+    /// less often than they claim.
+    HeavyTail {
+        /// Hill's estimate of the tail's exponent: below 2 there is no variance.
+        exponent: f64,
+    },
+    /// Fewer than 30 independent values: the interval relies on their being normally distributed.
+    SmallSample {
+        /// How many there were.
+        count: u64,
+    },
+    /// Fewer than 8 replicates.
+    FewReplicates {
+        /// How many there were.
+        replicates: u64,
+    },
+    /// Values that were not finite were left out: the estimate is the mean over the rest.
+    Rejected {
+        /// How many.
+        rejected: u64,
+    },
+    /// The error bar is below what rounding alone does to values of this size.
+    Rounding {
+        /// The largest absolute value.
+        largest: f64,
+    },
+    /// The iterations of an adaptive estimator contradict one another.
+    Inconsistent {
+        /// Their chi-square per degree of freedom, which should be near 1.
+        chi_square: f64,
+    },
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoSpread => f.write_str(
+                "all values are alike: the integrand is constant or every point missed what matters",
+            ),
+            Self::FewValues { share } => write!(
+                f,
+                "one value makes up {:.0} % of the variance: the error may be far above the error bar",
+                100.0 * share
+            ),
+            Self::HeavyTail { exponent } => write!(
+                f,
+                "the largest values have a tail with exponent {exponent:.2}: below 2 the variance is \
+                 infinite"
+            ),
+            Self::SmallSample { count } => {
+                write!(f, "only {count} independent values")
+            }
+            Self::FewReplicates { replicates } => write!(f, "only {replicates} replicates"),
+            Self::Rejected { rejected } => {
+                write!(f, "{rejected} values were not finite and left out")
+            }
+            Self::Rounding { largest } => write!(
+                f,
+                "the error bar is below the rounding of values as large as {largest:e}"
+            ),
+            Self::Inconsistent { chi_square } => write!(
+                f,
+                "the iterations contradict one another: chi-square per degree of freedom {chi_square:.1}"
+            ),
+        }
+    }
+}
+
+impl Warning {
+    pub(crate) fn of_rejected(rejected: u64) -> Vec<Self> {
+        (rejected > 0)
+            .then_some(Self::Rejected { rejected })
+            .into_iter()
+            .collect()
+    }
+
+    pub(crate) fn of_sample(count: u64) -> Option<Self> {
+        (count < 30).then_some(Self::SmallSample { count })
+    }
+
+    pub(crate) fn of_replicates(replicates: u64) -> Option<Self> {
+        (replicates < 8).then_some(Self::FewReplicates { replicates })
+    }
+}
+
+/// What the values themselves say against an error bar. The tally must be closed.
+pub(crate) fn diagnose<V: Value>(tally: &Tally<V>, std_error: Option<V>) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let (Some(std_error), Some(&high), Some(&low)) =
+        (std_error, tally.highest().first(), tally.lowest().first())
+    else {
+        return warnings;
+    };
+    let mean = tally.moments().mean();
+    let root = tally.moments().root();
+    let count = tally.moments().count() as f64;
+
+    let mut alike = false;
+    std_error.for_each(|error| alike |= error == 0.0);
+    if alike {
+        warnings.push(Warning::NoSpread);
+    }
+
+    let deviation = high
+        .zip(mean, |high, mean| high - mean)
+        .zip(low.zip(mean, |low, mean| low + mean), f64::max);
+    let mut share = 0.0_f64;
+    let _ = deviation.zip(root, |deviation, root| {
+        if root > 0.0 {
+            share = share.max((deviation / root).powi(2).min(1.0));
+        }
+        0.0
+    });
+    if share > usual_share(count) {
+        warnings.push(Warning::FewValues { share });
+    }
+
+    let gamma = hill(tally.highest(), mean).max(hill(tally.lowest(), mean.map(|mean| -mean)));
+    if tally.blocks() >= 4 * FEWEST as u64 && gamma > HEAVY {
+        let exponent = 1.0 / gamma;
+        warnings.push(Warning::HeavyTail { exponent });
+    }
+
+    let mut largest = 0.0_f64;
+    let size = high.zip(low, |high, low| high.abs().max(low.abs()));
+    let _ = size.zip(std_error, |size, error| {
+        if error > 0.0 && error < f64::EPSILON * size {
+            largest = largest.max(size);
+        }
+        0.0
+    });
+    if largest > 0.0 {
+        warnings.push(Warning::Rounding { largest });
+    }
+    warnings
+}
+
+/// The share of the largest of `count` values in their variance that raises no doubt: 5 %, and for small
+/// counts what the largest of so many normal values reaches once in a thousand times.
+fn usual_share(count: f64) -> f64 {
+    ((2.0 * count.ln() + 12.0) / count).max(0.05)
+}
+
+/// The fewest extremes that a tail is judged by.
+const FEWEST: usize = 8;
+
+/// The reciprocal exponent from which on a tail is called heavy: a variance asks for less than 1/2, and the
+/// estimate from 16 extremes has a standard error of a quarter of its value.
+const HEAVY: f64 = 0.45;
+
+/// Hill's estimate of the reciprocal of the tail's exponent, from the largest deviations; the largest of
+/// all components.[^hill]
+///
+/// [^hill]: Hill, Bruce (1975). *A Simple General Approach to Inference About the Tail of a Distribution*.
+///     <https://doi.org/10.1214/aos/1176343247>
+fn hill<V: Value>(extremes: &[V], centre: V) -> f64 {
+    let [above @ .., last] = extremes else {
+        return 0.0;
+    };
+    if above.len() + 1 < FEWEST {
+        return 0.0;
+    }
+    let least = last.zip(centre, |last, centre| last - centre);
+    let sum = above.iter().fold(V::ZERO, |sum, extreme| {
+        extreme
+            .zip(centre, |extreme, centre| extreme - centre)
+            .zip(least, |deviation, least| {
+                if least > 0.0 {
+                    (deviation / least).ln()
+                } else {
+                    0.0
+                }
+            })
+            .zip(sum, |logarithm, sum| sum + logarithm)
+    });
+    let mut gamma = 0.0_f64;
+    sum.for_each(|sum| gamma = gamma.max(sum / above.len() as f64));
+    gamma
+}

@@ -1,0 +1,86 @@
+//! A density that is constant in each of many cells of a square.
+
+use super::piecewise::largest;
+use super::{Piecewise, Warp};
+use crate::Error;
+
+/// A density on the unit square that is constant in each cell of a regular grid: that of an image, for
+/// instance.
+///
+/// The second coordinate is drawn from the sums of the rows, then the first from within the row. A cell or a
+/// whole row of weight zero is never hit.
+///
+/// ```
+/// use estimand::warp::{Piecewise2d, Warp};
+///
+/// let density = Piecewise2d::new(&[0.0, 1.0, 0.0, 3.0], 2)?;
+/// assert_eq!(density.density([0.75, 0.75]), 3.0);
+/// assert_eq!(density.density([0.25, 0.75]), 0.0);
+/// # Ok::<(), estimand::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Piecewise2d {
+    rows: Vec<Option<Piecewise>>,
+    marginal: Piecewise,
+}
+
+impl Piecewise2d {
+    /// The density proportional to `weights`, row after row with `columns` cells each. The first row is that
+    /// of the smallest second coordinates.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] as [`Piecewise::new`], and if the weights make no whole number of rows.
+    pub fn new(weights: &[f64], columns: usize) -> Result<Self, Error> {
+        if columns == 0 || !weights.len().is_multiple_of(columns) {
+            return Err(Error::refused(
+                "number of columns",
+                "a divisor of the number of weights",
+                columns,
+            ));
+        }
+        let scale = largest(weights)?;
+        let sums: Vec<f64> = weights
+            .chunks_exact(columns)
+            .map(|row| row.iter().map(|weight| weight / scale).sum())
+            .collect();
+        let rows = weights
+            .chunks_exact(columns)
+            .map(|row| Piecewise::new(row).ok())
+            .collect();
+        Ok(Self {
+            rows,
+            marginal: Piecewise::new(&sums)?,
+        })
+    }
+}
+
+impl Warp<2> for Piecewise2d {
+    type Point = [f64; 2];
+
+    #[inline]
+    fn sample(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        let y = self.marginal.sample([v]);
+        let (row, _) = self.marginal.locate(v);
+        // A row that is hit has weight; the middle is for rows whose weight vanished in the sum.
+        let x = self.rows[row].as_ref().map_or(0.5, |row| row.sample([u]));
+        [x, y]
+    }
+
+    #[inline]
+    fn density(&self, [x, y]: [f64; 2]) -> f64 {
+        let Some(row) = self.marginal.cell(y) else {
+            return 0.0;
+        };
+        let within = self.rows[row].as_ref().map_or(0.0, |row| row.density(x));
+        within * self.marginal.density(y)
+    }
+
+    fn invert(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
+        let row = self.marginal.cell(y)?;
+        let [u] = self.rows[row].as_ref()?.invert(x)?;
+        let [v] = self.marginal.invert(y)?;
+        Some([u, v])
+    }
+}

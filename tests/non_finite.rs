@@ -1,0 +1,190 @@
+//! Values that are not finite: named with their point, never averaged, never lost silently.
+
+use estimand::points::{Independent, NRooks, PointSet};
+use estimand::{
+    Average, Error, Estimator, Integrand, MonteCarlo, NonFinite, Replicated, Sampler, cube,
+};
+
+const COUNT: u64 = 10_000;
+
+/// `x`, but `value` where the first coordinate of the point `index` of `points` is met.
+fn spoiled(points: &impl PointSet, index: u64, value: f64) -> impl Integrand<Value = f64> {
+    struct Spoiled(f64, f64);
+    impl Integrand for Spoiled {
+        type Value = f64;
+        fn evaluate<S: Sampler>(&self, u: &mut S) -> f64 {
+            let [x, _] = u.next_2d();
+            if x == self.0 { self.1 } else { x }
+        }
+        fn dimensions(&self) -> u32 {
+            2
+        }
+    }
+    Spoiled(points.coordinate(index, 0), value)
+}
+
+#[test]
+fn the_error_names_the_point_and_carries_the_estimate_so_far() {
+    let points = Independent::new(4);
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for index in [0, 1, 1023, 1024, 7777, COUNT - 1] {
+            let incomplete = Average::new(&points, COUNT)
+                .estimate(&spoiled(&points, index, value))
+                .expect_err("one value is not finite");
+            let Error::NonFinite {
+                index: named,
+                replicate,
+                coordinates,
+                value: seen,
+            } = incomplete.reason
+            else {
+                panic!("another error: {}", incomplete.reason);
+            };
+            assert_eq!((named, replicate), (index, 0));
+            assert_eq!(
+                coordinates,
+                [points.coordinate(index, 0), points.coordinate(index, 1)]
+            );
+            assert_eq!(seen[0].to_bits(), value.to_bits());
+            let before = Average::new(&points, index)
+                .estimate(&cube(|[x, _]| x))
+                .ok();
+            assert_eq!(
+                incomplete.so_far.as_ref().map(|so_far| so_far.used),
+                before.as_ref().map(|_| index)
+            );
+            if let (Some(so_far), Some(before)) = (incomplete.so_far, before) {
+                assert!((so_far.mean - before.mean).abs() < 1e-14);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_first_of_several_is_named() {
+    let points = Independent::new(4);
+    let (early, late) = (points.coordinate(3000, 0), points.coordinate(9000, 0));
+    let f = cube(|[x]| if x == early || x == late { f64::NAN } else { x });
+    let incomplete = Average::new(&points, COUNT)
+        .estimate(&f)
+        .expect_err("two are NaN");
+    assert!(
+        matches!(incomplete.reason, Error::NonFinite { index: 3000, .. }),
+        "{incomplete}"
+    );
+}
+
+#[test]
+fn a_replicate_is_named() {
+    let rooks = |seed| NRooks::new(COUNT, seed).unwrap();
+    let replicated = Replicated::new(4, COUNT, rooks);
+    let means: Vec<f64> = {
+        let seen = std::sync::Mutex::new(Vec::new());
+        let probe = |seed| {
+            seen.lock().unwrap().push(seed);
+            rooks(seed)
+        };
+        let _ = Replicated::new(4, COUNT, probe)
+            .estimate(&cube(|[x]| x))
+            .unwrap();
+        let seeds = seen.into_inner().unwrap();
+        seeds
+            .iter()
+            .map(|&seed| rooks(seed).coordinate(5000, 0))
+            .collect()
+    };
+    let f = cube(|[x]| if x == means[2] { f64::INFINITY } else { 1.0 });
+    let incomplete = replicated.estimate(&f).expect_err("one is infinite");
+    assert!(
+        matches!(
+            incomplete.reason,
+            Error::NonFinite {
+                replicate: 2,
+                index: 5000,
+                ..
+            }
+        ),
+        "{incomplete}"
+    );
+    let so_far = incomplete.so_far.expect("two whole replicates");
+    assert_eq!((so_far.mean, so_far.used), (1.0, 2 * COUNT));
+    assert_eq!(so_far.std_error, Some(0.0));
+}
+
+#[test]
+fn rejected_values_are_left_out_and_counted() {
+    let points = Independent::new(4);
+    let f = cube(|[x]| if x < 0.25 { f64::NAN } else { x });
+    let bad = (0..COUNT)
+        .filter(|&index| points.coordinate(index, 0) < 0.25)
+        .count() as u64;
+    let estimate = Average::new(&points, COUNT)
+        .non_finite(NonFinite::Reject)
+        .estimate(&f)
+        .unwrap();
+    assert_eq!((estimate.used, estimate.rejected), (COUNT, bad));
+    // The mean of x over [1/4, 1), with a standard deviation of 0.75 / sqrt(12): six of its errors.
+    assert!((estimate.mean - 0.625).abs() < 6.0 * 0.2165 / 7500_f64.sqrt());
+
+    let estimate = MonteCarlo::new(COUNT, 1)
+        .non_finite(NonFinite::Reject)
+        .estimate(&f)
+        .unwrap();
+    assert!((estimate.mean - 0.625).abs() < 6.0 * estimate.std_error.unwrap());
+    assert!(estimate.rejected > 0 && estimate.used == COUNT);
+}
+
+#[test]
+fn nothing_but_rejected_values_is_an_error() {
+    let f = cube(|[_]| f64::NAN);
+    let reject = NonFinite::Reject;
+    let alone = MonteCarlo::new(100, 1)
+        .non_finite(reject)
+        .estimate(&f)
+        .expect_err("all are NaN");
+    assert_eq!(alone.reason, Error::NothingLeft { rejected: 100 });
+    let rooks = |seed| NRooks::new(50, seed).unwrap();
+    let several = Replicated::new(3, 50, rooks)
+        .non_finite(reject)
+        .estimate(&f)
+        .expect_err("all are NaN");
+    assert_eq!(several.reason, Error::NothingLeft { rejected: 150 });
+}
+
+#[test]
+fn arguments_that_make_no_estimate_are_refused_by_name() {
+    let f = cube(|[x]| x);
+    let message = |incomplete: estimand::Incomplete<f64>| incomplete.to_string();
+    assert_eq!(
+        message(MonteCarlo::new(0, 1).estimate(&f).unwrap_err()),
+        "the count must be at least 1; it was 0"
+    );
+    assert!(Average::new(Independent::new(1), 0).estimate(&f).is_err());
+    assert_eq!(
+        message(
+            Replicated::new(1, 10, Independent::new)
+                .estimate(&f)
+                .unwrap_err()
+        ),
+        "the number of replicates must be at least 2; it was 1"
+    );
+    let same = Replicated::new(3, 10, |_| Independent::new(1))
+        .estimate(&f)
+        .unwrap_err();
+    assert_eq!(
+        same.reason,
+        Error::IdenticalReplicates {
+            first: 0,
+            second: 1
+        }
+    );
+}
+
+#[test]
+fn one_point_has_a_mean_and_no_error_bar() {
+    let estimate = MonteCarlo::new(1, 1).estimate(&cube(|[_]| 3.0)).unwrap();
+    assert_eq!(
+        (estimate.mean, estimate.std_error, estimate.used),
+        (3.0, None, 1)
+    );
+}

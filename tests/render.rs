@@ -1,0 +1,132 @@
+//! Our pictures against Mitsuba's: same scenes, two programs, one expectation.
+//!
+//! The references and their standard errors are under `reference/images`, with how they were made. Every comparison
+//! has a false-positive rate of 1e-3, over all of its pixels and scales; the seeds are fixed. Where one
+//! fails, a map of the p-values is left under `target/tmp`.
+
+#[path = "render/agreement.rs"]
+mod agreement;
+
+use agreement::{Batches, Reference};
+use estimand::hash::hash;
+use estimand::path::bsdf::{Bsdf, Lambertian};
+use estimand::path::light::{AreaLights, Environment, Light, NoEnvironment};
+use estimand::path::scenes::{self, CORNELL_LIGHT};
+use estimand::path::sensor::{Pinhole, Sensor};
+use estimand::path::{Image, View};
+use estimand::points::{Halton, HashedOwen, Owen, Sobol, Stratified};
+use estimand::{Average, Estimator, MonteCarlo};
+
+fn reference(name: &'static str, size: usize, samples: u64) -> Reference {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/reference/images");
+    let read = |suffix| Image::read_exr(format!("{root}/{name}{suffix}.exr")).unwrap();
+    let image = read("").with_std_error(read("_std_error")).unwrap();
+    Reference {
+        name,
+        image: image.downsampled(image.width() / size).unwrap(),
+        samples,
+        batches: 128,
+    }
+}
+
+/// Our picture, in 32 batches.
+fn batches<B: Bsdf, L: Light, E: Environment, C: Sensor, T: Estimator>(
+    view: &View<B, L, E, C>,
+    size: u32,
+    spp: u64,
+    seed: u64,
+    estimator: impl Fn(u64) -> T + Sync,
+) -> Batches {
+    Batches::new(32, spp, |batch| {
+        view.render([size; 2], hash(seed, batch), &estimator)
+            .unwrap()
+    })
+}
+
+type Room = View<Lambertian, AreaLights, NoEnvironment, Pinhole>;
+
+fn short_paths(segments: u32) -> Room {
+    let mut view = scenes::cornell_box();
+    view.paths = view.paths.longest(segments).unwrap();
+    view
+}
+
+#[test]
+fn cornell_box() {
+    let ours = batches(&scenes::cornell_box(), 128, 12, 1, |seed| {
+        MonteCarlo::new(12, seed)
+    });
+    reference("cornell_box", 128, 4 * 32768)
+        .compare(&ours, "monte-carlo")
+        .check();
+}
+
+#[test]
+fn cornell_box_of_eight_segments() {
+    let reference = reference("cornell_box_depth_8", 128, 32768);
+    let view = short_paths(8);
+    let ours = batches(&view, 128, 16, 2, |seed| MonteCarlo::new(16, seed));
+    reference.compare(&ours, "monte-carlo").check();
+    let ours = batches(&view, 128, 16, 3, |seed| {
+        Average::new(Stratified::new(16, 2, seed).unwrap(), 16)
+    });
+    reference.compare(&ours, "stratified").check();
+    let halton = Halton::new(32).unwrap();
+    let ours = batches(&view, 128, 12, 4, |seed| {
+        Average::new(halton.clone().scrambled(Owen { seed }), 12)
+    });
+    reference.compare(&ours, "halton").check();
+    let sobol = Sobol::new(32).unwrap();
+    let ours = batches(&view, 128, 16, 5, |seed| {
+        Average::new(sobol.clone().scrambled(HashedOwen { seed }), 16)
+    });
+    reference.compare(&ours, "sobol").check();
+}
+
+#[test]
+fn cornell_box_with_mirror_and_glass() {
+    let view = scenes::cornell_box_specular();
+    let ours = batches(&view, 128, 16, 6, |seed| MonteCarlo::new(16, seed));
+    reference("cornell_box_specular", 128, 65536)
+        .compare(&ours, "monte-carlo")
+        .check();
+}
+
+#[test]
+fn furnace() {
+    let ours = batches(&scenes::furnace(), 64, 32, 7, |seed| {
+        MonteCarlo::new(32, seed)
+    });
+    reference("furnace", 64, 16384)
+        .compare(&ours, "monte-carlo")
+        .check();
+}
+
+#[test]
+fn bodies_under_a_sky() {
+    let ours = batches(&scenes::environment(), 128, 16, 8, |seed| {
+        MonteCarlo::new(16, seed)
+    });
+    reference("environment", 128, 32768)
+        .compare(&ours, "monte-carlo")
+        .check();
+}
+
+/// What the comparison is for: that errors of a few parts in a thousand do not pass.
+#[test]
+fn biased_pictures_do_not_agree() {
+    let reference = reference("cornell_box_depth_8", 128, 32768);
+    let one_less = batches(&short_paths(7), 128, 16, 9, |seed| {
+        MonteCarlo::new(16, seed)
+    });
+    let outcome = reference.compare(&one_less, "one-bounce-less");
+    assert!(!outcome.holds(), "{outcome}");
+    assert!(outcome.map().exists());
+
+    let brighter = CORNELL_LIGHT.map(|radiance| 1.01 * radiance);
+    let mut view = scenes::cornell_box_lit(brighter).unwrap();
+    view.paths = view.paths.longest(8).unwrap();
+    let brighter = batches(&view, 128, 16, 10, |seed| MonteCarlo::new(16, seed));
+    let outcome = reference.compare(&brighter, "brighter-light");
+    assert!(!outcome.holds(), "{outcome}");
+}

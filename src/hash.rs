@@ -54,8 +54,9 @@ pub const fn unit_f32(word: u64) -> f32 {
 
 /// The image of `index` under a random permutation of `0..count` that `key` selects.
 ///
-/// Constant memory, any count: a keyed bijection of the next power of two, walked along its cycle until
-/// it falls inside `0..count` (fewer than two steps on average).[^black]
+/// Constant memory, any count. Up to 16 every permutation is equally likely, to one part in a million; more are
+/// permuted by a keyed bijection of the next power of two, walked along its cycle until it falls inside `0..count`
+/// (fewer than two steps on average),[^black] in which pairs of images are as good as uniform.
 ///
 /// # Panics
 ///
@@ -74,39 +75,103 @@ pub const fn unit_f32(word: u64) -> f32 {
 #[inline]
 pub const fn permute(index: u64, count: u64, key: u64) -> u64 {
     assert!(index < count, "permute: the index must be below the count");
-    if count == 1 {
-        return 0;
+    if count <= FEW {
+        return shuffle(index, count, key);
     }
+    let bijection = Bijection::new(key);
     let bits = u64::BITS - (count - 1).leading_zeros();
     let mut image = index;
     loop {
-        image = bijection(image, bits, key);
+        image = bijection.apply(image, bits);
         if image < count {
             return image;
         }
     }
 }
 
-/// A keyed bijection of the words of `bits` bits, 1 to 64.
-///
-/// Six rounds, each one bijective on its own: add a key, multiply by an odd number, xor the upper half
-/// into the lower. All arithmetic is modulo 2^bits.
+/// So few that they are shuffled one by one: on small sets of words the rounds of the bijection mix too little.
+pub(crate) const FEW: u64 = 16;
+
+/// Where Fisher and Yates' shuffle of `0..count` puts `index`.
 #[inline]
-const fn bijection(word: u64, bits: u32, key: u64) -> u64 {
-    let mask = u64::MAX >> (u64::BITS - bits);
-    let half = bits.div_ceil(2);
-    let mut word = word;
-    let mut key = mix(key.wrapping_add(GOLDEN));
-    let mut round = 0;
-    while round < 6 {
-        word = word.wrapping_add(key) & mask;
-        // The key's upper half makes the multiplier; its lowest bit is set, so that it has an inverse.
-        word = word.wrapping_mul((key >> 32) | 1) & mask;
-        word ^= word >> half;
-        key = mix(key.wrapping_add(GOLDEN));
-        round += 1;
+const fn shuffle(index: u64, count: u64, key: u64) -> u64 {
+    // 16! is below 2^45: one word has enough randomness for all the swaps.
+    let mut word = mix(key.wrapping_add(GOLDEN));
+    let mut image = index;
+    let mut last = count;
+    while last > 1 {
+        // A random place in 0..last, to be swapped with the last of them.
+        let product = word as u128 * last as u128;
+        let place = (product >> 64) as u64;
+        word = word.wrapping_mul(last);
+        last -= 1;
+        if image == last {
+            image = place;
+        } else if image == place {
+            image = last;
+        }
     }
-    word.wrapping_add(key) & mask
+    image
+}
+
+/// Rounds of a [`Bijection`]: with one fewer, pairs of images are visibly not uniform among 32 words.
+pub(crate) const ROUNDS: usize = 6;
+
+/// A keyed bijection of the words of any number of bits.
+///
+/// Rounds of steps that are bijective each: add, multiply by an odd number, xor the upper half into the lower. All
+/// arithmetic is modulo 2^bits, so that words of up to 32 bits need no more than 32 of the numbers' bits.
+pub(crate) struct Bijection {
+    pub(crate) summands: [u64; ROUNDS],
+    pub(crate) multipliers: [u64; ROUNDS],
+    pub(crate) last: u64,
+}
+
+impl Bijection {
+    /// The bijection that `key` selects.
+    #[inline]
+    pub(crate) const fn new(key: u64) -> Self {
+        // Odd numbers without a pattern in their digits; the upper bits of the products serve.
+        const FACTORS: [u64; ROUNDS] = [
+            GOLDEN,
+            0xd134_2543_de82_ef95,
+            0xaf25_1af3_b0f0_25b5,
+            0x8cb9_2ba7_2f3d_8dd7,
+            0xc2b2_ae3d_27d4_eb4f,
+            0xe703_7ed1_a0b4_28db,
+        ];
+        let key = mix(key.wrapping_add(GOLDEN));
+        let (mut summands, mut multipliers) = ([0; ROUNDS], [0; ROUNDS]);
+        let mut round = 0;
+        while round < ROUNDS {
+            let product = key.wrapping_mul(FACTORS[round]);
+            summands[round] = product >> 29;
+            multipliers[round] = (product >> 7) | 1;
+            round += 1;
+        }
+        let last = key.wrapping_mul(0x1d8e_4e27_c47d_124f) >> 31;
+        Self {
+            summands,
+            multipliers,
+            last,
+        }
+    }
+
+    /// The image of a word of `bits` bits, 1 to 64.
+    #[inline]
+    pub(crate) const fn apply(&self, word: u64, bits: u32) -> u64 {
+        let mask = u64::MAX >> (u64::BITS - bits);
+        let half = bits.div_ceil(2);
+        let mut word = word;
+        let mut round = 0;
+        while round < ROUNDS {
+            word = word.wrapping_add(self.summands[round]);
+            word = word.wrapping_mul(self.multipliers[round]) & mask;
+            word ^= word >> half;
+            round += 1;
+        }
+        word.wrapping_add(self.last) & mask
+    }
 }
 
 #[cfg(test)]
@@ -171,13 +236,18 @@ mod tests {
 
     #[test]
     fn permutations_are_uniform_in_pairs() {
-        // Over 20 000 keys, (p(i), p(j)) must fall evenly on the n (n - 1) ordered pairs. Chi-square with
+        // Over 100 000 keys, (p(i), p(j)) must fall evenly on the n (n - 1) ordered pairs. Chi-square with
         // n (n - 1) - 1 degrees of freedom; the bound mean + 6 standard deviations has a false-positive
         // rate below 1e-6 for each of the cases.
-        const KEYS: u64 = 20_000;
-        for count in [2_u64, 3, 4, 5, 7, 8, 9, 16] {
-            for (i, j) in [(0, 1), (0, count - 1), (count / 2, 0)] {
-                if i == j {
+        const KEYS: u64 = 100_000;
+        for count in [2_u64, 3, 4, 5, 7, 8, 9, 16, 17, 31, 32, 33, 64] {
+            for (i, j) in [
+                (0, 1),
+                (0, count - 1),
+                (count / 2, 0),
+                (count / 2, count / 4),
+            ] {
+                if i == j || j >= count {
                     continue;
                 }
                 let n = usize::try_from(count).unwrap();

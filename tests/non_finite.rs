@@ -51,7 +51,7 @@ fn the_error_names_the_point_and_carries_the_estimate_so_far() {
                 .ok();
             assert_eq!(
                 incomplete.so_far.as_ref().map(|so_far| so_far.used),
-                before.map(|_| index)
+                before.as_ref().map(|_| index)
             );
             if let (Some(so_far), Some(before)) = (incomplete.so_far, before) {
                 assert!((so_far.mean - before.mean).abs() < 1e-14);

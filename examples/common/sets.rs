@@ -5,8 +5,9 @@ use std::fmt;
 use clap::{Args, ValueEnum};
 use estimand::Error;
 use estimand::points::{
-    DigitPermutation, DigitalShift, Halton, Hammersley, HashedOwen, Independent, LinearMatrix,
-    NRooks, Owen, PointSet, Shifted, Sobol, Stratified, VanDerCorput,
+    DigitPermutation, DigitalShift, Faure, Halton, Hammersley, HashedOwen, Independent, Kronecker,
+    Lattice, LinearMatrix, MultiJittered, NRooks, OrthogonalArray, Owen, PointSet, Shifted, Sobol,
+    Stratified, VanDerCorput,
 };
 
 /// The sets that a program can be told to use.
@@ -15,10 +16,15 @@ pub(crate) enum Set {
     Independent,
     Stratified,
     NRooks,
+    MultiJittered,
+    OrthogonalArray,
     VanDerCorput,
     Halton,
     Hammersley,
+    Faure,
     Sobol,
+    Lattice,
+    Kronecker,
 }
 
 /// How a set is randomised.
@@ -59,7 +65,7 @@ impl fmt::Display for Scramble {
     }
 }
 
-/// What selects one set: its name is the program's own affair.
+/// How a set is randomised. Its name is each program's own argument.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct Choice {
     /// How the points are randomised
@@ -89,7 +95,24 @@ impl Choice {
             Set::Independent => self.shiftable(set, Independent::new(seed)),
             Set::Stratified => self.shiftable(set, Stratified::new(count, dimensions, seed)?),
             Set::NRooks => self.shiftable(set, NRooks::new(count, seed)?),
+            Set::MultiJittered => self.shiftable(set, MultiJittered::new(count, seed)?),
+            Set::OrthogonalArray => {
+                self.shiftable(set, OrthogonalArray::new(count, dimensions, seed)?)
+            }
+            Set::VanDerCorput if dimensions != 1 => Err(Error::refused(
+                "number of dimensions",
+                "1 for van-der-corput",
+                dimensions,
+            )),
             Set::VanDerCorput => self.shiftable(set, VanDerCorput::new(2)?),
+            Set::Lattice if count.is_power_of_two() || count > 1 << 13 => {
+                self.shiftable(set, Lattice::published(count, dimensions)?)
+            }
+            // The published vector is made for powers of two.
+            Set::Lattice => {
+                self.shiftable(set, Lattice::component_by_component(count, dimensions)?)
+            }
+            Set::Kronecker => self.shiftable(set, Kronecker::r(dimensions)?),
             Set::Sobol => {
                 let sobol = Sobol::new(dimensions)?;
                 Ok(match scramble {
@@ -108,6 +131,14 @@ impl Choice {
                     Digits::Shift(scramble) => Box::new(halton.scrambled(scramble)),
                     Digits::Permutation(scramble) => Box::new(halton.scrambled(scramble)),
                     Digits::Owen(scramble) => Box::new(halton.scrambled(scramble)),
+                })
+            }
+            Set::Faure => {
+                let faure = Faure::new(dimensions)?;
+                self.digits(set, faure, |faure, scramble| match scramble {
+                    Digits::Shift(scramble) => Box::new(faure.scrambled(scramble)),
+                    Digits::Permutation(scramble) => Box::new(faure.scrambled(scramble)),
+                    Digits::Owen(scramble) => Box::new(faure.scrambled(scramble)),
                 })
             }
             Set::Hammersley => {
@@ -156,7 +187,7 @@ impl Choice {
             Set::Sobol => {
                 "none, shift, digital-shift, linear-matrix, owen or hash-owen for this set"
             }
-            Set::Halton | Set::Hammersley => {
+            Set::Halton | Set::Hammersley | Set::Faure => {
                 "none, shift, digital-shift, digit-permutation or owen for this set"
             }
             _ => "none or shift for this set",

@@ -1,13 +1,18 @@
 //! The L2 discrepancies: root mean squares of local discrepancies, in closed form.
 
 mod compensated;
+mod division;
 mod kernel;
 mod pairs;
+mod updatable;
 
 use self::compensated::Compensated;
-use self::kernel::{Centred, Extreme, Kernel, Mixture, Star, Symmetric, WrapAround};
+use self::kernel::{Centred, Diaphony, Extreme, Kernel, Mixture, Star, Symmetric, WrapAround};
 use self::pairs::Tiles;
 use super::Points;
+use crate::Error;
+
+pub use updatable::UpdatableL2;
 
 /// The discrepancies that are root mean squares over a family of boxes, each a double sum over the points.
 ///
@@ -16,7 +21,8 @@ use super::Points;
 /// `D^2 = c^d - 2/n sum_i prod_k h(x_ik) + 1/n^2 sum_ij prod_k K(x_ik, x_jk)`
 ///
 /// with a kernel `K` of one coordinate of two points, `h(x)` its integral over the one and `c` its integral over both.
-/// Time `O(d n^2)`, memory `O(d n)`.
+/// Time `O(d n^2)`, memory `O(d n)`; where it is less, [`Star`](Self::Star) takes `O(n log^(d-1) n)` by divide and
+/// conquer.
 ///
 /// # Accuracy
 ///
@@ -78,53 +84,193 @@ pub enum L2 {
     /// [^morokoff]: Morokoff, William; Caflisch, Russel (1994). *Quasi-Random Sequences and Their Discrepancies*.
     ///     <https://doi.org/10.1137/0915077>
     Extreme,
+    /// The diaphony: no boxes but waves, `D^2 = sum_f prod_k max(1, |f_k|)^-2 |1/n sum_i exp(2 pi j f x_i)|^2` over all whole
+    /// frequencies `f` but 0.[^zinterhof]
+    ///
+    /// With `t = |x - y|`: `K = 1 + 2 pi^2 (t^2 - t + 1/6)`, `h = c = 1`. Not normalised: a single point has a square of
+    /// `(1 + pi^2 / 3)^d - 1`.
+    ///
+    /// [^zinterhof]: Zinterhof, Peter (1976). *Über einige Abschätzungen bei der Approximation von Funktionen mit
+    ///     Gleichverteilungsmethoden*. Sitzungsberichte der Österreichischen Akademie der Wissenschaften II 185.
+    Diaphony,
+}
+
+/// Evaluates an expression with `$K` the kernel of a kind.
+macro_rules! with_kernel {
+    ($kind:expr, $K:ident => $value:expr) => {
+        match $kind {
+            L2::Star => {
+                type $K = Star;
+                $value
+            }
+            L2::Centred => {
+                type $K = Centred;
+                $value
+            }
+            L2::WrapAround => {
+                type $K = WrapAround;
+                $value
+            }
+            L2::Mixture => {
+                type $K = Mixture;
+                $value
+            }
+            L2::Symmetric => {
+                type $K = Symmetric;
+                $value
+            }
+            L2::Extreme => {
+                type $K = Extreme;
+                $value
+            }
+            L2::Diaphony => {
+                type $K = Diaphony;
+                $value
+            }
+        }
+    };
 }
 
 impl L2 {
     /// The square of the discrepancy.
     pub fn squared(self, points: &Points<'_>) -> f64 {
-        match self {
-            Self::Star => squared::<Star>(points),
-            Self::Centred => squared::<Centred>(points),
-            Self::WrapAround => squared::<WrapAround>(points),
-            Self::Mixture => squared::<Mixture>(points),
-            Self::Symmetric => squared::<Symmetric>(points),
-            Self::Extreme => squared::<Extreme>(points),
-        }
+        let (singles, pairs) = self.sums(points);
+        assemble(
+            points.count(),
+            self.mean(points.dimensions()),
+            singles,
+            pairs,
+        )
     }
 
     /// The discrepancy: the root of the [square](Self::squared).
     pub fn root(self, points: &Points<'_>) -> f64 {
         self.squared(points).sqrt()
     }
+
+    /// The square of the weighted discrepancy: the sum over all sets of dimensions but the empty one of the product of their
+    /// weights times the squared discrepancy of the points' projection onto them.[^sloan]
+    ///
+    /// The kernel is `prod_k (1 + w_k k(x_k, y_k))`, with `k` the kernel above, less 1 for those "in all projections". So for
+    /// these all weights 1 give [`squared`](Self::squared); for [`Star`](Self::Star) and [`Extreme`](Self::Extreme) they give
+    /// the sum over all projections, where `squared` is that of all dimensions together alone.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for another number of weights than dimensions, and a weight that is negative, infinite or NaN.
+    ///
+    /// [^sloan]: Sloan, Ian; Woźniakowski, Henryk (1998). *When Are Quasi-Monte Carlo Algorithms Efficient for High
+    ///     Dimensional Integrals?* <https://doi.org/10.1006/jcom.1997.0463>
+    pub fn squared_weighted(self, points: &Points<'_>, weights: &[f64]) -> Result<f64, Error> {
+        if weights.len() != points.dimensions() {
+            return Err(Error::refused(
+                "number of weights",
+                "that of the dimensions",
+                format_args!("{}, not {}", weights.len(), points.dimensions()),
+            ));
+        }
+        for (dimension, &weight) in weights.iter().enumerate() {
+            if !(weight >= 0.0 && weight.is_finite()) {
+                return Err(Error::refused(
+                    "weight of a dimension",
+                    "finite and at least 0",
+                    format_args!("{weight}, of dimension {dimension}"),
+                ));
+            }
+        }
+        Ok(with_kernel!(self, K => weighted::<K>(points, weights)))
+    }
+
+    /// The weighted discrepancy: the root of its [square](Self::squared_weighted).
+    ///
+    /// # Errors
+    ///
+    /// As for [`squared_weighted`](Self::squared_weighted).
+    pub fn root_weighted(self, points: &Points<'_>, weights: &[f64]) -> Result<f64, Error> {
+        self.squared_weighted(points, weights).map(f64::sqrt)
+    }
+
+    /// The integral of the kernel.
+    fn mean(self, dimensions: usize) -> Compensated {
+        let (numerator, denominator) = with_kernel!(self, K => K::MEAN);
+        (0..dimensions).fold(Compensated::from(1.0), |power, _| {
+            power.times(numerator).over(denominator)
+        })
+    }
+
+    /// The sums over all points and over all ordered pairs of points.
+    fn sums(self, points: &Points<'_>) -> (Compensated, Compensated) {
+        let pairs = if self == Self::Star && division::pays(points.count(), points.dimensions()) {
+            division::sum(points)
+        } else {
+            with_kernel!(self, K => {
+                let scale = (0..points.dimensions()).map(|_| K::SCALE).product();
+                Tiles::new::<K>(points).sum::<K>(|_, pair| pair).times(scale)
+            })
+        };
+        let mut singles = Compensated::ZERO;
+        with_kernel!(self, K => {
+            for row in points.rows() {
+                singles.add(row.iter().map(|&x| K::single(x)).product());
+            }
+        });
+        (singles, pairs)
+    }
+
+    /// What one point adds to the sum over all points, what its pair with itself adds to the sum over the pairs, and what its
+    /// pairs with others add to it in one of their two orders.
+    fn sums_with<'a>(
+        self,
+        point: &[f64],
+        others: impl Iterator<Item = &'a [f64]>,
+    ) -> (f64, f64, Compensated) {
+        with_kernel!(self, K => {
+            let single = point.iter().map(|&x| K::single(x)).product();
+            let pair = |other: &[f64]| -> f64 {
+                point
+                    .iter()
+                    .zip(other)
+                    .map(|(&x, &y)| K::SCALE * K::pair(K::features(x), K::features(y)))
+                    .product()
+            };
+            let mut pairs = Compensated::ZERO;
+            others.for_each(|other| pairs.add(pair(other)));
+            (single, pair(point), pairs)
+        })
+    }
 }
 
-fn squared<K: Kernel>(points: &Points<'_>) -> f64 {
-    let (count, dimensions) = (points.count() as f64, points.dimensions());
-    let power = |base: f64| {
-        let mut power = Compensated::from(1.0);
-        for _ in 0..dimensions {
-            power = power.times(base);
-        }
-        power
-    };
-    let (numerator, denominator) = K::MEAN;
-    let mut squared = (0..dimensions).fold(Compensated::from(1.0), |power, _| {
-        power.times(numerator).over(denominator)
-    });
-    let mut singles = Compensated::default();
-    for row in points.rows() {
-        singles.add(row.iter().map(|&x| K::single(x)).product());
-    }
+/// The square of a discrepancy from its three terms.
+fn assemble(count: usize, mean: Compensated, singles: Compensated, pairs: Compensated) -> f64 {
+    let count = count as f64;
+    let mut squared = mean;
     squared.merge(singles.times(-2.0).over(count));
-    let scale = power(K::SCALE).value();
-    squared.merge(
-        Tiles::new::<K>(points)
-            .sum::<K>(|_, k| k)
-            .times(scale)
-            .over(count)
-            .over(count),
-    );
+    squared.merge(pairs.over(count).over(count));
     // What is left of the sum may be smaller than the rounding of the products in it.
     squared.value().max(0.0)
+}
+
+fn weighted<K: Kernel>(points: &Points<'_>, weights: &[f64]) -> f64 {
+    let offset = |weight: f64| if K::PROJECTIONS { 1.0 - weight } else { 1.0 };
+    let offsets: Vec<f64> = weights.iter().map(|&weight| offset(weight)).collect();
+    let slopes: Vec<f64> = weights.iter().map(|&weight| weight * K::SCALE).collect();
+    let (numerator, denominator) = K::MEAN;
+    let mean = weights
+        .iter()
+        .fold(Compensated::from(1.0), |mean, &weight| {
+            let numerator = offset(weight) * denominator + weight * numerator;
+            mean.times(numerator).over(denominator)
+        });
+    let mut singles = Compensated::ZERO;
+    for row in points.rows() {
+        let factors = row.iter().zip(weights);
+        singles.add(
+            factors
+                .map(|(&x, &weight)| offset(weight) + weight * K::single(x))
+                .product(),
+        );
+    }
+    let pairs = Tiles::new::<K>(points)
+        .sum::<K>(|dimension, pair| offsets[dimension] + slopes[dimension] * pair);
+    assemble(points.count(), mean, singles, pairs)
 }

@@ -122,8 +122,8 @@ impl<S: DigitScramble> PointSet for Halton<S> {
             }
             return;
         }
+        let first = self.first + first;
         let mut block = Block::new(first, dimensions, out, self.dimensions(), self.seed());
-        block.first += self.first;
         let inside = block.dimensions.clone();
         let mut room = Room::new();
         for (tile, start) in inside

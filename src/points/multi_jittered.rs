@@ -76,6 +76,15 @@ impl MultiJittered {
             seed,
         })
     }
+
+    /// How many cells the grids have along the axis `dimension`.
+    pub fn cells(&self, dimension: u32) -> u64 {
+        if dimension.is_multiple_of(2) {
+            self.columns
+        } else {
+            self.rows
+        }
+    }
 }
 
 /// The whole number nearest to the square root.

@@ -123,7 +123,7 @@ impl BinaryScramble for Plain {
         0
     }
 
-    #[inline]
+    #[inline(always)]
     fn scramble(&self, _: u64, digits: u64) -> u64 {
         digits
     }

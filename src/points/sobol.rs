@@ -55,9 +55,8 @@ pub use directions::DIMENSIONS;
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct Sobol<S = Plain> {
-    /// The columns of the generator matrices: column `bit` of `dimension` at `bit * dimensions + dimension`.
-    columns: Arc<[u64]>,
-    dimensions: u32,
+    /// One generator matrix for each dimension.
+    matrices: Arc<[Columns]>,
     scramble: S,
 }
 
@@ -80,16 +79,8 @@ impl Sobol {
                 dimensions,
             ));
         }
-        let width = dimensions as usize;
-        let mut columns = vec![0; 64 * width];
-        for (dimension, matrix) in directions::matrices().take(width).enumerate() {
-            for (bit, column) in matrix.into_iter().enumerate() {
-                columns[bit * width + dimension] = column;
-            }
-        }
         Ok(Self {
-            columns: columns.into(),
-            dimensions,
+            matrices: directions::matrices().take(dimensions as usize).collect(),
             scramble: Plain,
         })
     }
@@ -98,25 +89,15 @@ impl Sobol {
 impl<S> Sobol<S> {
     /// The same points, randomised by `scramble` instead.
     pub fn scrambled<T: BinaryScramble>(self, scramble: T) -> Sobol<T> {
-        let width = self.dimensions as usize;
-        let mut columns = self.columns;
-        for dimension in 0..self.dimensions {
-            let column = |bit: usize| bit * width + dimension as usize;
-            let plain: Columns = core::array::from_fn(|bit| columns[column(bit)]);
-            let mut matrix = plain;
+        let mut matrices = self.matrices;
+        for (dimension, place) in (0..).zip(0..matrices.len()) {
+            let mut matrix = matrices[place];
             scramble.prepare(scramble.key(dimension), &mut matrix);
-            if matrix != plain {
-                let columns = Arc::make_mut(&mut columns);
-                for (bit, digits) in matrix.into_iter().enumerate() {
-                    columns[column(bit)] = digits;
-                }
+            if matrix != matrices[place] {
+                Arc::make_mut(&mut matrices)[place] = matrix;
             }
         }
-        Sobol {
-            columns,
-            dimensions: self.dimensions,
-            scramble,
-        }
+        Sobol { matrices, scramble }
     }
 }
 
@@ -124,11 +105,11 @@ impl<S: BinaryScramble> Sobol<S> {
     /// The digits of a coordinate before they are scrambled.
     #[inline]
     pub(super) fn digits(&self, index: u64, dimension: u32) -> u64 {
+        let columns = &self.matrices[dimension as usize];
         let mut digits = 0;
         let mut rest = index;
         while rest != 0 {
-            let bit = rest.trailing_zeros() as usize;
-            digits ^= self.columns[bit * self.dimensions as usize + dimension as usize];
+            digits ^= columns[rest.trailing_zeros() as usize];
             rest &= rest - 1;
         }
         digits
@@ -138,15 +119,16 @@ impl<S: BinaryScramble> Sobol<S> {
 impl<S: BinaryScramble> PointSet for Sobol<S> {
     #[inline]
     fn coordinate(&self, index: u64, dimension: u32) -> f64 {
-        if dimension >= self.dimensions {
+        if dimension as usize >= self.matrices.len() {
             return Independent::past(self.scramble.seed()).coordinate(index, dimension);
         }
         let key = self.scramble.key(dimension);
         unit(self.scramble.scramble(key, self.digits(index, dimension)))
     }
 
+    #[expect(clippy::cast_possible_truncation, reason = "21201 at most")]
     fn dimensions(&self) -> u32 {
-        self.dimensions
+        self.matrices.len() as u32
     }
 
     fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
@@ -154,12 +136,12 @@ impl<S: BinaryScramble> PointSet for Sobol<S> {
             first,
             dimensions,
             out,
-            self.dimensions,
+            self.dimensions(),
             self.scramble.seed(),
         );
         let inside = block.dimensions.clone();
         let start = inside.start;
-        for tile in inside.clone().step_by(TILE as usize) {
+        for tile in inside.clone().step_by(LANES) {
             let dimensions = tile..inside.end.min(tile + TILE);
             vectorised(
                 #[inline(always)]
@@ -221,17 +203,12 @@ impl<S: BinaryScramble> Sobol<S> {
             keys[lane] = self.scramble.key(dimension);
             digits[lane] = self.digits(base | (lane / width) as u64, dimension);
         }
-        let column = |bit: u32| {
-            let column = bit as usize * self.dimensions as usize + dimensions.start as usize;
-            &self.columns[column..][..width]
-        };
+        let matrices = &self.matrices[dimensions.start as usize..][..width];
         for bit in 0..STEPS.trailing_zeros() {
             let (done, next) = steps.split_at_mut(1 << bit);
             for (done, next) in done.iter().zip(next) {
-                let changes = column(bits + bit).iter().cycle();
-                for ((next, done), change) in next[..lanes].iter_mut().zip(done).zip(changes) {
-                    *next = done ^ change;
-                }
+                *next = *done;
+                toggle(&mut next[..lanes], matrices, bits + bit, 1);
             }
         }
 
@@ -252,18 +229,32 @@ impl<S: BinaryScramble> Sobol<S> {
             if number.is_multiple_of(STEPS as u64) {
                 // The bits that counting up has changed, above those of the steps.
                 let changed = (number ^ number.wrapping_sub(1)) >> STEPS.trailing_zeros();
-                for bit in 0..changed.trailing_ones() {
-                    // There is no bit past the last one, and no point either.
-                    let bit = bits + STEPS.trailing_zeros() + bit;
-                    if bit < u64::BITS {
-                        for (digits, change) in
-                            digits[..lanes].iter_mut().zip(column(bit).iter().cycle())
-                        {
-                            *digits ^= change;
-                        }
-                    }
-                }
+                let lowest = bits + STEPS.trailing_zeros();
+                toggle(
+                    &mut digits[..lanes],
+                    matrices,
+                    lowest,
+                    changed.trailing_ones(),
+                );
             }
+        }
+    }
+}
+
+/// Changes the digits of all lanes by `count` columns from `lowest` on; there are none past the last, and no points
+/// either.
+#[inline(always)]
+fn toggle(digits: &mut [u64], matrices: &[Columns], lowest: u32, count: u32) {
+    let mut changes = [0; LANES];
+    let last = u64::BITS.min(lowest + count);
+    for (change, columns) in changes.iter_mut().zip(matrices) {
+        for bit in lowest..last {
+            *change ^= columns[bit as usize];
+        }
+    }
+    for digits in digits.chunks_exact_mut(matrices.len()) {
+        for (digits, change) in digits.iter_mut().zip(&changes) {
+            *digits ^= change;
         }
     }
 }

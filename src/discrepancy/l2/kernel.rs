@@ -1,9 +1,15 @@
 //! The kernels of the L2 discrepancies, in one dimension.
 
+use core::f64::consts::PI;
+
 /// A kernel `K(x, y)` on `[0, 1]^2`, of which two coordinates make the integrals below.
 pub(super) trait Kernel {
     /// The integral of the kernel over both coordinates, as a fraction.
     const MEAN: (f64, f64);
+
+    /// Whether the kernel is 1 plus the kernel of one dimension alone, so that products over the dimensions contain all
+    /// projections.
+    const PROJECTIONS: bool;
 
     /// `K` is this times [`pair`](Self::pair): a power of two, which costs nothing here and one product
     /// a dimension there.
@@ -23,6 +29,7 @@ pub(super) struct Star;
 
 impl Kernel for Star {
     const MEAN: (f64, f64) = (1.0, 3.0);
+    const PROJECTIONS: bool = false;
     const SCALE: f64 = 1.0;
 
     fn single(x: f64) -> f64 {
@@ -43,6 +50,7 @@ pub(super) struct Centred;
 
 impl Kernel for Centred {
     const MEAN: (f64, f64) = (13.0, 12.0);
+    const PROJECTIONS: bool = true;
     const SCALE: f64 = 1.0;
 
     fn single(x: f64) -> f64 {
@@ -64,6 +72,7 @@ pub(super) struct WrapAround;
 
 impl Kernel for WrapAround {
     const MEAN: (f64, f64) = (4.0, 3.0);
+    const PROJECTIONS: bool = true;
     const SCALE: f64 = 1.0;
 
     fn single(_: f64) -> f64 {
@@ -86,6 +95,7 @@ pub(super) struct Mixture;
 
 impl Kernel for Mixture {
     const MEAN: (f64, f64) = (19.0, 12.0);
+    const PROJECTIONS: bool = true;
     const SCALE: f64 = 0.5;
 
     fn single(x: f64) -> f64 {
@@ -110,6 +120,7 @@ pub(super) struct Symmetric;
 
 impl Kernel for Symmetric {
     const MEAN: (f64, f64) = (4.0, 3.0);
+    const PROJECTIONS: bool = true;
     const SCALE: f64 = 2.0;
 
     fn single(x: f64) -> f64 {
@@ -130,6 +141,7 @@ pub(super) struct Extreme;
 
 impl Kernel for Extreme {
     const MEAN: (f64, f64) = (1.0, 12.0);
+    const PROJECTIONS: bool = false;
     const SCALE: f64 = 1.0;
 
     fn single(x: f64) -> f64 {
@@ -146,5 +158,30 @@ impl Kernel for Extreme {
         let least = if x < y { x } else { y };
         let above = if above_x < above_y { above_x } else { above_y };
         least * above
+    }
+}
+
+pub(super) struct Diaphony;
+
+impl Kernel for Diaphony {
+    const MEAN: (f64, f64) = (1.0, 1.0);
+    const PROJECTIONS: bool = true;
+    const SCALE: f64 = 1.0;
+
+    fn single(_: f64) -> f64 {
+        1.0
+    }
+
+    fn features(x: f64) -> [f64; 2] {
+        [x, 0.0]
+    }
+
+    #[inline(always)]
+    fn pair([x, _]: [f64; 2], [y, _]: [f64; 2]) -> f64 {
+        // 1 + 2 pi^2 (t^2 - t + 1/6) = 1 - pi^2 / 6 + 2 pi^2 (t - 1/2)^2
+        const SQUARE: f64 = 2.0 * PI * PI;
+        const LEAST: f64 = 1.0 - PI * PI / 6.0;
+        let centred = (x - y).abs() - 0.5;
+        LEAST + SQUARE * (centred * centred)
     }
 }

@@ -1,5 +1,7 @@
 //! The double sum over all pairs of points, in tiles that the first-level cache holds.
 
+use core::marker::PhantomData;
+
 use super::compensated::Compensated;
 use super::kernel::Kernel;
 use crate::discrepancy::Points;
@@ -7,8 +9,8 @@ use crate::reduce;
 
 /// Points in a tile.
 const TILE: usize = 64;
-/// Pairs whose products grow side by side. A constant, so that every machine adds in the same order.
-const LANES: usize = 32;
+/// Dimensions whose factors are multiplied in one pass over a tile.
+const TOGETHER: usize = 4;
 
 /// One feature of the coordinates of all points in a tile.
 type Column = [f64; TILE];
@@ -57,7 +59,13 @@ impl Tiles {
             self.counts.len() as u64,
             |job| {
                 let tile = usize::try_from(job).expect("a tile is in memory");
-                dispatch(|| self.row::<K>(tile, factor))
+                let row = Row::<K, _> {
+                    tiles: self,
+                    tile,
+                    factor,
+                    kernel: PhantomData,
+                };
+                row.run()
             },
             |part| {
                 total.merge(part);
@@ -101,40 +109,78 @@ fn with_tile<K: Kernel>(
     point: &[[f64; 2]],
     columns: &[[Column; 2]],
     counts: &Column,
-    factor: impl Fn(usize, f64) -> f64,
+    factor: impl Fn(usize, f64) -> f64 + Copy,
 ) -> f64 {
-    let mut sums = [0.0; LANES];
-    for first in [0, LANES] {
-        let mut products = [0.0; LANES];
-        products.copy_from_slice(&counts[first..first + LANES]);
-        for (dimension, (&here, there)) in point.iter().zip(columns).enumerate() {
-            for lane in 0..LANES {
-                let there = [there[0][first + lane], there[1][first + lane]];
-                products[lane] *= factor(dimension, K::pair(here, there));
-            }
-        }
-        for lane in 0..LANES {
-            sums[lane] += products[lane];
-        }
+    let mut products = *counts;
+    let (fours, ones) = point.as_chunks::<TOGETHER>();
+    let (columns_of_fours, columns_of_ones) = columns.as_chunks::<TOGETHER>();
+    let mut dimension = 0;
+    for (point, columns) in fours.iter().zip(columns_of_fours) {
+        multiply::<K, TOGETHER>(&mut products, point, columns, |k, pair| {
+            factor(dimension + k, pair)
+        });
+        dimension += TOGETHER;
     }
-    let mut width = LANES / 2;
+    for (point, columns) in ones.iter().zip(columns_of_ones) {
+        multiply::<K, 1>(&mut products, &[*point], &[*columns], |_, pair| {
+            factor(dimension, pair)
+        });
+        dimension += 1;
+    }
+    let mut width = TILE / 2;
     while width > 0 {
-        for lane in 0..width {
-            sums[lane] += sums[lane + width];
+        let (here, there) = products.split_at_mut(width);
+        for (sum, &term) in here.iter_mut().zip(&*there) {
+            *sum += term;
         }
         width /= 2;
     }
-    sums[0]
+    products[0]
 }
 
-/// Runs `job` compiled for the vector instructions of the machine at hand. They change nothing in the result: no product is
-/// fused with a sum, and the lanes are [`LANES`] everywhere.
+/// Multiplies the products of one point with those of a tile by the factors of some dimensions.
+#[inline(always)]
+fn multiply<K: Kernel, const N: usize>(
+    products: &mut Column,
+    point: &[[f64; 2]; N],
+    columns: &[[Column; 2]; N],
+    factor: impl Fn(usize, f64) -> f64,
+) {
+    for (lane, product) in products.iter_mut().enumerate() {
+        for k in 0..N {
+            let there = [columns[k][0][lane], columns[k][1][lane]];
+            *product *= factor(k, K::pair(point[k], there));
+        }
+    }
+}
+
+/// [`Tiles::row`], compiled for the vector instructions of the machine at hand. They change nothing in the result: no
+/// product is fused with a sum, and the order of the sums is the same everywhere.
+struct Row<'a, K, F> {
+    tiles: &'a Tiles,
+    tile: usize,
+    factor: F,
+    kernel: PhantomData<K>,
+}
+
+impl<K: Kernel, F: Fn(usize, f64) -> f64 + Copy> Row<'_, K, F> {
+    #[cfg(feature = "simd")]
+    fn run(self) -> Compensated {
+        pulp::Arch::new().dispatch(self)
+    }
+
+    #[cfg(not(feature = "simd"))]
+    fn run(self) -> Compensated {
+        self.tiles.row::<K>(self.tile, self.factor)
+    }
+}
+
 #[cfg(feature = "simd")]
-fn dispatch<T>(job: impl FnOnce() -> T) -> T {
-    pulp::Arch::new().dispatch(job)
-}
+impl<K: Kernel, F: Fn(usize, f64) -> f64 + Copy> pulp::WithSimd for Row<'_, K, F> {
+    type Output = Compensated;
 
-#[cfg(not(feature = "simd"))]
-fn dispatch<T>(job: impl FnOnce() -> T) -> T {
-    job()
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Compensated {
+        self.tiles.row::<K>(self.tile, self.factor)
+    }
 }

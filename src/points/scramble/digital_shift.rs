@@ -29,7 +29,7 @@ impl BinaryScramble for DigitalShift {
         self.seed
     }
 
-    #[inline]
+    #[inline(always)]
     fn scramble(&self, key: u64, digits: u64) -> u64 {
         digits ^ key
     }

@@ -32,14 +32,14 @@ impl BinaryScramble for HashedOwen {
         self.seed
     }
 
-    #[inline]
+    #[inline(always)]
     fn scramble(&self, key: u64, digits: u64) -> u64 {
         scramble(digits, key)
     }
 }
 
 /// The nested scramble that `key`, which must be well mixed, selects.
-#[inline]
+#[inline(always)]
 pub(in crate::points) fn scramble(digits: u64, key: u64) -> u64 {
     laine_karras(digits.reverse_bits(), key).reverse_bits()
 }
@@ -50,7 +50,7 @@ pub(in crate::points) fn scramble(digits: u64, key: u64) -> u64 {
 ///
 /// [^vegdahl]: Vegdahl, Nathan (2021). *Building a Better LK Hash*.
 ///     <https://psychopath.io/post/2021_01_30_building_a_better_lk_hash>
-#[inline]
+#[inline(always)]
 fn laine_karras(mut word: u64, key: u64) -> u64 {
     word ^= word.wrapping_mul(0x9fb2_1c65_3d20_adea);
     word = word.wrapping_add(key);

@@ -1,7 +1,7 @@
 //! A random triangular matrix, then a digital shift.
 
 use super::{BinaryScramble, Columns};
-use crate::hash::{hash, mix};
+use crate::hash::hash;
 
 /// A random lower triangular matrix over the two-element field, with ones on its diagonal, applied to the digits;
 /// then a digital shift.[^matousek]
@@ -48,8 +48,8 @@ impl BinaryScramble for LinearMatrix {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn scramble(&self, key: u64, digits: u64) -> u64 {
-        digits ^ mix(key)
+        digits ^ key
     }
 }

@@ -37,7 +37,7 @@ impl BinaryScramble for Owen {
         self.seed
     }
 
-    #[inline]
+    #[inline(always)]
     fn scramble(&self, key: u64, digits: u64) -> u64 {
         // 54 digits, one more than a coordinate has. Written out, so that many are computed side by side.
         digits

@@ -236,7 +236,38 @@ fn coordinate(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// The same block by one thread, and by two of which each writes a half.
+fn threads(criterion: &mut Criterion) {
+    const DIMENSIONS: u32 = 32;
+    const ROUNDS: u64 = 64;
+    let mut group = settings(criterion, "threads/d32");
+    group.throughput(Throughput::Elements(ROUNDS * BLOCK as u64));
+    let points = Sobol::new(DIMENSIONS)
+        .unwrap()
+        .scrambled(HashedOwen { seed: SEED });
+    let rows = (BLOCK / DIMENSIONS as usize) as u64;
+    for count in [1, 2] {
+        let mut outs = vec![vec![0.0; BLOCK]; count];
+        group.bench_function(format!("Sobol, HashedOwen, {count} thread(s)"), |bencher| {
+            bencher.iter(|| {
+                std::thread::scope(|scope| {
+                    for (thread, out) in (0..).zip(&mut outs) {
+                        let points = &points;
+                        scope.spawn(move || {
+                            for round in (thread..ROUNDS).step_by(count) {
+                                points.fill(round * rows, 0..DIMENSIONS, black_box(out));
+                            }
+                        });
+                    }
+                });
+            });
+        });
+    }
+    group.finish();
+}
+
 fn points(criterion: &mut Criterion) {
+    threads(criterion);
     for dimensions in [8, 32, 128] {
         fill(criterion, dimensions);
     }

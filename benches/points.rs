@@ -15,7 +15,11 @@ use estimand::points::{
 };
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 
-/// Points in a block.
+/// Coordinates in a block: half a MiB, which the second-level cache holds.
+const BLOCK: usize = 1 << 16;
+
+/// Points of a finite set, and of a sequence before it starts again: all blocks of them are filled in turn, as an
+/// estimate fills them.
 const COUNT: u64 = 1 << 16;
 
 const SEED: u64 = 1;
@@ -91,7 +95,8 @@ fn sets(dimensions: u32) -> Vec<(&'static str, Box<dyn PointSet>)> {
 fn fill(criterion: &mut Criterion, dimensions: u32) {
     let mut group = settings(criterion, &format!("fill/d{dimensions}"));
     let width = dimensions as usize;
-    let mut out = vec![0.0; usize::try_from(COUNT).unwrap() * width];
+    let mut out = vec![0.0; BLOCK];
+    let rows = (BLOCK / width) as u64;
     group.throughput(Throughput::Elements(out.len() as u64));
 
     let mut value = 0.0;
@@ -111,28 +116,38 @@ fn fill(criterion: &mut Criterion, dimensions: u32) {
     });
     let table = sobol_qmc::params::JoeKuoD6::STANDARD;
     group.bench_function("peer: sobol-qmc", |bencher| {
+        let mut sobol = sobol_qmc::Sobol::<f64>::new(width, &table).unwrap();
         bencher.iter(|| {
-            let sobol = sobol_qmc::Sobol::<f64>::new(width, &table).unwrap();
-            for (row, point) in out.chunks_exact_mut(width).zip(sobol) {
+            for (row, point) in black_box(&mut out[..])
+                .chunks_exact_mut(width)
+                .zip(&mut sobol)
+            {
                 row.copy_from_slice(&point);
             }
         });
     });
     group.bench_function("peer: halton", |bencher| {
+        // The crate's bases are at most 255: the first 54 primes.
+        let mut sequences: Vec<_> = PRIMES
+            .iter()
+            .cycle()
+            .take(width)
+            .map(|&base| halton::Sequence::new(base))
+            .collect();
         bencher.iter(|| {
-            // The crate's bases are at most 255: the first 54 primes.
-            for (column, base) in PRIMES.iter().cycle().take(width).enumerate() {
-                let sequence = halton::Sequence::new(*base);
-                for (u, coordinate) in out[column..].iter_mut().step_by(width).zip(sequence) {
+            for (column, sequence) in sequences.iter_mut().enumerate() {
+                let column = out[column..].iter_mut().step_by(width);
+                for (u, coordinate) in column.zip(sequence) {
                     *u = coordinate;
                 }
             }
+            black_box(&mut out);
         });
     });
     if dimensions <= 32 {
         group.bench_function("peer: quasi-rd", |bencher| {
+            let mut sequence = quasi_rd::Sequence::new(width);
             bencher.iter(|| {
-                let mut sequence = quasi_rd::Sequence::new(width);
                 for u in black_box(&mut out[..]) {
                     *u = sequence.next_f64();
                 }
@@ -156,7 +171,11 @@ fn fill(criterion: &mut Criterion, dimensions: u32) {
     );
     for (name, points) in sets(dimensions) {
         group.bench_function(name, |bencher| {
-            bencher.iter(|| points.fill(0, 0..dimensions, black_box(&mut out)));
+            let mut first = 0;
+            bencher.iter(|| {
+                points.fill(first, 0..dimensions, black_box(&mut out));
+                first = (first + rows) % COUNT;
+            });
         });
     }
     group.finish();
@@ -217,7 +236,38 @@ fn coordinate(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// The same block by one thread, and by two of which each writes a half.
+fn threads(criterion: &mut Criterion) {
+    const DIMENSIONS: u32 = 32;
+    const ROUNDS: u64 = 64;
+    let mut group = settings(criterion, "threads/d32");
+    group.throughput(Throughput::Elements(ROUNDS * BLOCK as u64));
+    let points = Sobol::new(DIMENSIONS)
+        .unwrap()
+        .scrambled(HashedOwen { seed: SEED });
+    let rows = (BLOCK / DIMENSIONS as usize) as u64;
+    for count in [1, 2] {
+        let mut outs = vec![vec![0.0; BLOCK]; count];
+        group.bench_function(format!("Sobol, HashedOwen, {count} thread(s)"), |bencher| {
+            bencher.iter(|| {
+                std::thread::scope(|scope| {
+                    for (thread, out) in (0..).zip(&mut outs) {
+                        let points = &points;
+                        scope.spawn(move || {
+                            for round in (thread..ROUNDS).step_by(count) {
+                                points.fill(round * rows, 0..DIMENSIONS, black_box(out));
+                            }
+                        });
+                    }
+                });
+            });
+        });
+    }
+    group.finish();
+}
+
 fn points(criterion: &mut Criterion) {
+    threads(criterion);
     for dimensions in [8, 32, 128] {
         fill(criterion, dimensions);
     }

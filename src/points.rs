@@ -1,5 +1,41 @@
 //! Where the points come from: one set or adaptor of sets a file.
 //!
+//! # Which one
+//!
+//! | set | count | dimensions | take it | leave it |
+//! |---|---|---|---|---|
+//! | [`Independent`] | any | any | as plain Monte Carlo with random access; for comparison | where any other helps |
+//! | [`Stratified`] | a grid | pairs and the like | one to three dimensions, rough integrands | in many dimensions |
+//! | [`NRooks`] | any | any | sums of functions of one coordinate | where coordinates act together |
+//! | [`MultiJittered`] | a grid | pairs | pairs of coordinates, counts that are no power of two | where powers of two will do |
+//! | [`OrthogonalArray`] | prime squares | to p + 1 | many dimensions that act in pairs | smooth integrands |
+//! | [`VanDerCorput`] | any | 1 | an interval; to see how it works | |
+//! | [`Halton`] | any | to 65536 | counts not known beforehand, few dimensions | plain past about eight dimensions |
+//! | [`Hammersley`] | as made | to 65536 | a known count, few dimensions | when more points may be wanted |
+//! | [`Faure`] | powers of its base | to 65536 | few dimensions, for comparison | nearly always: scrambled Sobol' is better |
+//! | [`Sobol`] | powers of two | to 1024 or 21201 | smooth integrands in any dimension: the first to try, scrambled | odd counts |
+//! | [`Lattice`] | as made | to 1024 | smooth, periodic integrands; shifted and folded, others too | integrands with jumps |
+//! | [`LatticeSequence`] | powers of two | to 1024 | the same, count not known beforehand | integrands with jumps |
+//! | [`Kronecker`] | any | to about five | cheap points for pictures and low dimensions | more dimensions |
+//! | [`Rescrambled`] | powers of two | any | light paths of any length | a fixed number of dimensions that act together |
+//! | [`BlueNoise`] | powers of two | any | images at few samples a pixel | when rendering may stop early |
+//!
+//! # Adaptors
+//!
+//! [`Shifted`] randomises any set, [`Folded`] makes integrands periodic, [`Padded`] takes the first dimensions from one set
+//! and the rest from another. The digits of nets are randomised by a scramble that is part of the set's type; one that
+//! is not made for a set does not compile:
+//!
+//! | randomisation | for | what it is |
+//! |---|---|---|
+//! | [`DigitalShift`] | base 2, base b | one random number is added, digit by digit |
+//! | [`DigitPermutation`] | base b | a random permutation at every place |
+//! | [`LinearMatrix`] | base 2 | a random triangular matrix, then a digital shift |
+//! | [`Owen`] | base 2, base b | a random permutation at every node of the tree of digits |
+//! | [`HashedOwen`] | base 2 | nearly the same, in a few multiplications |
+//!
+//! [`pixel`] has coordinates for renderers, a pure function of pixel, sample, dimension and seed.
+//!
 //! # Writing your own
 //!
 //! Implement [`PointSet::coordinate`], and keep the laws that [`PointSet`] states; nothing else is needed.

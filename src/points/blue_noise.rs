@@ -1,6 +1,6 @@
 //! Points for all pixels of an image at once, whose errors are spread as blue noise.
 
-use super::scramble::scramble;
+use super::scramble::{HashedOwen, scramble_reversed};
 use super::{PointSet, Sobol};
 use crate::Error;
 use crate::hash::{hash, permute, unit};
@@ -31,7 +31,8 @@ use crate::hash::{hash, permute, unit};
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct BlueNoise {
-    sobol: Sobol,
+    /// The scramble is there for its order of digits; the keys are those of the pairs.
+    sobol: Sobol<HashedOwen>,
     /// The logarithm of the number of samples for each pixel.
     samples: u32,
     seed: u64,
@@ -52,7 +53,7 @@ impl BlueNoise {
             ));
         }
         Ok(Self {
-            sobol: Sobol::new(2)?,
+            sobol: Sobol::new(2)?.scrambled(HashedOwen { seed }),
             samples: samples.trailing_zeros(),
             seed,
         })
@@ -99,7 +100,7 @@ impl PointSet for BlueNoisePixel {
         let (pair, axis) = (dimension / 2, dimension % 2);
         let key = hash(hash(*seed, image), u64::from(pair));
         let place = shuffled(self.first | sample, 32 + samples, key);
-        unit(scramble(
+        unit(scramble_reversed(
             sobol.digits(place, axis),
             hash(!key, u64::from(axis)),
         ))

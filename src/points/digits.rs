@@ -7,12 +7,17 @@ use super::scramble::DigitScramble;
 /// stop at a power above 2^43, and are followed by the rest of the shift as a fraction.
 const FINEST: u64 = 1 << 63;
 
+/// Coordinates that are computed at once.
+pub(super) const SLACK: usize = 8;
+
 /// A base, and what is computed from it once.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Base {
     base: u32,
     /// `2^64 / base`, rounded up: multiplying by it divides small numbers by the base.
     reciprocal: u64,
+    /// While the denominator of a fraction is below this, there is room for one digit more.
+    room: u64,
     /// How many digits are split off first: as many as the largest power up to 1024 has, one at least.
     leading: u32,
     /// That power of the base.
@@ -32,6 +37,7 @@ impl Base {
         Self {
             base,
             reciprocal: u64::MAX / u64::from(base) + 1,
+            room: FINEST / u64::from(base),
             leading,
             power,
             inverse: 1.0 / f64::from(power),
@@ -57,7 +63,8 @@ impl Base {
 
     /// The scrambled radical inverses of consecutive indices, from `first` on, where digits are not nested.
     ///
-    /// The first digits come from a table of all their values; the other digits are the same in a run of indices.
+    /// The first digits come from a table of all their values; the other digits are the same in a run of indices. The last
+    /// [`SLACK`] numbers of `out` are no results.
     pub(super) fn inverses<S: DigitScramble>(
         &self,
         scramble: &S,
@@ -68,8 +75,8 @@ impl Base {
     ) {
         let power = u64::from(self.power);
         let (mut run, mut start) = (first / power, to_index(first % power));
-        let mut out = out;
-        while !out.is_empty() {
+        let mut done = 0;
+        while done + SLACK < out.len() {
             let mut digits = Places {
                 base: self,
                 rest: run,
@@ -77,19 +84,27 @@ impl Base {
             let mut scrambled = Scrambled::new(self, scramble, key);
             scrambled.skip(self.leading);
             let rest = self.rest(&mut scrambled, &mut digits);
-            let length = out.len().min(table.len() - start);
-            let (now, later) = out.split_at_mut(length);
-            for (u, &leading) in now.iter_mut().zip(&table[start..]) {
-                *u = self.join(leading, rest);
+            let length = self.power().min(start + out.len() - SLACK - done) - start;
+            // Whole vectors: what they write past the end of the run, the next one overwrites.
+            let vectors = out[done..].chunks_exact_mut(SLACK);
+            for (u, leading) in vectors
+                .zip(table[start..].chunks_exact(SLACK))
+                .take(length.div_ceil(SLACK))
+            {
+                for (u, &leading) in u.iter_mut().zip(leading) {
+                    *u = self.join(leading, rest);
+                }
             }
-            (out, start, run) = (later, 0, run + 1);
+            done += length;
+            start = 0;
+            run += 1;
         }
     }
 
-    /// What the first digits of all indices below the power of the base make, where digits are not nested.
-    pub(super) fn table<S: DigitScramble>(&self, scramble: &S, key: u64, table: &mut Vec<f64>) {
-        table.clear();
-        table.push(0.0);
+    /// What the first digits of all indices below the power of the base make, where digits are not nested; then
+    /// [`SLACK`] numbers without meaning.
+    pub(super) fn table<S: DigitScramble>(&self, scramble: &S, key: u64) -> Vec<f64> {
+        let mut table = vec![0.0];
         let mut scrambled = Scrambled::new(self, scramble, key);
         let mut weight = f64::from(self.power);
         for _ in 0..self.leading {
@@ -109,6 +124,9 @@ impl Base {
                 *entry += digits[0];
             }
         }
+        // Room to read whole vectors.
+        table.resize(table.len() + SLACK, 0.0);
+        table
     }
 
     /// The number in `[0, 1)` with the scrambled `digits` after the radix point.
@@ -141,7 +159,7 @@ impl Base {
     ) -> f64 {
         let base = u64::from(self.base);
         let mut denominator = 1;
-        while denominator < FINEST / base
+        while denominator < self.room
             && let Some(digit) = digits.next()
         {
             scrambled.push(digit);
@@ -155,7 +173,7 @@ impl Base {
         ((leading + rest) * self.inverse).min(BELOW_ONE)
     }
 
-    /// How many entries the [`table`](Self::table) has.
+    /// How many entries with a meaning the [`table`](Self::table) has.
     pub(super) fn power(&self) -> usize {
         self.power as usize
     }

@@ -23,8 +23,8 @@ use crate::Error;
 ///
 /// let points = Faure::new(3)?;
 /// assert_eq!(points.base(), 3);
-/// let third: Vec<f64> = (0..3).map(|dimension| points.coordinate(3, dimension)).collect();
-/// assert_eq!(third, [1.0 / 9.0, 4.0 / 9.0, 7.0 / 9.0]);
+/// let ninths: Vec<f64> = (0..3).map(|d| (9.0 * points.coordinate(3, d)).round()).collect();
+/// assert_eq!(ninths, [1.0, 4.0, 7.0]);
 /// # Ok::<(), estimand::Error>(())
 /// ```
 ///

@@ -1,10 +1,11 @@
 //! Halton's points.
 
 use core::ops::Range;
-use std::sync::Arc;
+use std::borrow::Cow;
+use std::sync::{Arc, OnceLock};
 
 use super::block::{Block, vectorised};
-use super::digits::Base;
+use super::digits::{Base, SLACK};
 use super::scramble::{DigitScramble, Plain};
 use super::{Independent, PointSet, rows};
 use crate::Error;
@@ -29,7 +30,8 @@ use crate::Error;
 ///
 /// # Memory
 ///
-/// 40 bytes for a dimension, shared by all clones and scrambled ones.
+/// 56 bytes for a dimension, shared by all clones. Blocks of points make a table of up to 8 KiB for each dimension whose base
+/// is below 1024, which clones share; for larger bases a table lives as long as its block is filled.
 ///
 /// ```
 /// use estimand::points::{Halton, PointSet};
@@ -46,6 +48,8 @@ use crate::Error;
 #[must_use]
 pub struct Halton<S = Plain> {
     bases: Arc<[Base]>,
+    /// What the first digits make, made when a block first needs it.
+    tables: Arc<[OnceLock<Box<[f64]>>]>,
     first: u64,
     scramble: S,
 }
@@ -69,6 +73,7 @@ impl Halton {
         }
         Ok(Self {
             bases: primes(dimensions).into_iter().map(Base::new).collect(),
+            tables: (0..dimensions).map(|_| OnceLock::new()).collect(),
             first: 0,
             scramble: Plain,
         })
@@ -79,6 +84,7 @@ impl<S> Halton<S> {
     /// The same points, randomised by `scramble` instead.
     pub fn scrambled<T: DigitScramble>(self, scramble: T) -> Halton<T> {
         Halton {
+            tables: self.bases.iter().map(|_| OnceLock::new()).collect(),
             bases: self.bases,
             first: self.first,
             scramble,
@@ -125,7 +131,6 @@ impl<S: DigitScramble> PointSet for Halton<S> {
         let first = self.first + first;
         let mut block = Block::new(first, dimensions, out, self.dimensions(), self.seed());
         let inside = block.dimensions.clone();
-        let mut room = Room::new();
         for (tile, start) in inside
             .clone()
             .step_by(TOGETHER)
@@ -134,7 +139,7 @@ impl<S: DigitScramble> PointSet for Halton<S> {
             let count = TOGETHER.min((inside.end - tile) as usize);
             vectorised(
                 #[inline(always)]
-                || self.fill_tile(&mut block, &mut room, tile, start..start + count),
+                || self.fill_tile(&mut block, tile, start..start + count),
             );
         }
     }
@@ -151,67 +156,60 @@ const TOGETHER: usize = 4;
 /// Points that are.
 const POINTS: usize = 256;
 
-/// Memory of [`Halton::fill_tile`].
-struct Room {
-    tables: [Vec<f64>; TOGETHER],
-    columns: [[f64; POINTS]; TOGETHER],
-}
-
-impl Room {
-    fn new() -> Self {
-        Self {
-            tables: [const { Vec::new() }; TOGETHER],
-            columns: [[0.0; POINTS]; TOGETHER],
+impl<S: DigitScramble> Halton<S> {
+    /// The table of what the first digits make in one dimension, if there is one or `count` points are worth one. Tables of
+    /// large bases are not kept.
+    fn table(&self, dimension: usize, key: u64, count: usize) -> Option<Cow<'_, [f64]>> {
+        /// The most entries of a table that is kept.
+        const KEPT: usize = 1024;
+        let (base, table) = (&self.bases[dimension], &self.tables[dimension]);
+        let make = || base.table(&self.scramble, key);
+        if let Some(table) = table.get() {
+            Some(Cow::Borrowed(table))
+        } else if base.power() > 2 * count {
+            None
+        } else if base.power() > KEPT {
+            Some(Cow::Owned(make()))
+        } else {
+            Some(Cow::Borrowed(table.get_or_init(|| make().into())))
         }
     }
-}
 
-impl<S: DigitScramble> Halton<S> {
     /// Writes the coordinates in the dimensions from `dimension` on into `columns` of the block, [`TOGETHER`] at most.
     #[inline(always)]
-    fn fill_tile(
-        &self,
-        block: &mut Block<'_>,
-        room: &mut Room,
-        dimension: u32,
-        columns: Range<usize>,
-    ) {
+    fn fill_tile(&self, block: &mut Block<'_>, dimension: u32, columns: Range<usize>) {
         let count = block.count();
-        let bases = &self.bases[dimension as usize..][..columns.len()];
-        let keyed = || {
-            bases
-                .iter()
-                .zip((dimension..).map(|d| self.scramble.key(d)))
-        };
-        // A table pays if most of it is used.
-        let pays = |base: &Base| base.power() <= 2 * count;
-        for ((base, key), table) in keyed().zip(&mut room.tables) {
-            if pays(base) {
-                base.table(&self.scramble, key, table);
-            }
+        let mut together = [[0.0; POINTS + SLACK]; TOGETHER];
+        let mut keys = [0; TOGETHER];
+        let mut tables = [const { None }; TOGETHER];
+        let places = dimension as usize..dimension as usize + columns.len();
+        for (lane, (place, dimension)) in places.clone().zip(dimension..).enumerate() {
+            keys[lane] = self.scramble.key(dimension);
+            tables[lane] = self.table(place, keys[lane], count);
         }
         let mut index = block.first;
         for out in block.out.chunks_mut(POINTS * block.width) {
             let points = out.len() / block.width;
-            for (((base, key), table), column) in keyed().zip(&room.tables).zip(&mut room.columns) {
-                let column = &mut column[..points];
-                if pays(base) {
+            for (lane, place) in places.clone().enumerate() {
+                let (base, key) = (&self.bases[place], keys[lane]);
+                let column = &mut together[lane][..points + SLACK];
+                if let Some(table) = &tables[lane] {
                     base.inverses(&self.scramble, key, table, index, column);
                 } else {
-                    for (index, u) in (index..).zip(column) {
+                    for (index, u) in (index..).zip(&mut column[..points]) {
                         *u = base.inverse(&self.scramble, key, index);
                     }
                 }
             }
             let rows = out.chunks_exact_mut(block.width);
             if columns.len() == TOGETHER {
-                let [a, b, c, d] = &room.columns;
+                let [a, b, c, d] = &together;
                 for ((((row, a), b), c), d) in rows.zip(a).zip(b).zip(c).zip(d) {
                     row[columns.start..][..TOGETHER].copy_from_slice(&[*a, *b, *c, *d]);
                 }
             } else {
                 for (point, row) in rows.enumerate() {
-                    for (u, column) in row[columns.clone()].iter_mut().zip(&room.columns) {
+                    for (u, column) in row[columns.clone()].iter_mut().zip(&together) {
                         *u = column[point];
                     }
                 }

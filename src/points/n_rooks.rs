@@ -160,7 +160,7 @@ impl Columns {
         let bits = u64::BITS - (count - 1).leading_zeros();
         let (mask, half) = (u32::MAX >> (u32::BITS - bits), bits.div_ceil(2));
         let mut images = [0; LANES];
-        for (lane, image) in images.iter_mut().enumerate() {
+        for (lane, image) in images[..row.len().min(LANES)].iter_mut().enumerate() {
             let mut word = index as u32;
             for round in 0..ROUNDS {
                 word = word.wrapping_add(self.summands[round][lane]);

@@ -1,6 +1,6 @@
 //! Paths of any length from a few good dimensions.
 
-use super::scramble::scramble;
+use super::scramble::{HashedOwen, scramble, scramble_reversed};
 use super::{PointSet, Sobol};
 use crate::Error;
 use crate::hash::{hash, unit};
@@ -38,7 +38,8 @@ use crate::hash::{hash, unit};
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct Rescrambled {
-    sobol: Sobol,
+    /// The scramble is there for its order of digits; the keys are those of the groups.
+    sobol: Sobol<HashedOwen>,
     seed: u64,
 }
 
@@ -50,7 +51,7 @@ impl Rescrambled {
     /// [`Error::Refused`] for a width that [`Sobol::new`] refuses.
     pub fn new(width: u32, seed: u64) -> Result<Self, Error> {
         Ok(Self {
-            sobol: Sobol::new(width)?,
+            sobol: Sobol::new(width)?.scrambled(HashedOwen { seed }),
             seed,
         })
     }
@@ -70,7 +71,7 @@ impl Rescrambled {
         let (group, axis) = (dimension / width, dimension % width);
         let key = hash(seed, u64::from(group));
         let digits = self.sobol.digits(shuffled(index, key), axis);
-        scramble(digits, hash(key, u64::from(axis)))
+        scramble_reversed(digits, hash(key, u64::from(axis)))
     }
 }
 

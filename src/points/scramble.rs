@@ -30,7 +30,7 @@ mod owen;
 pub use digit_permutation::DigitPermutation;
 pub use digital_shift::DigitalShift;
 pub use hashed_owen::HashedOwen;
-pub(super) use hashed_owen::scramble;
+pub(super) use hashed_owen::{scramble, scramble_reversed};
 pub use linear_matrix::LinearMatrix;
 pub use owen::Owen;
 
@@ -58,12 +58,14 @@ pub trait BinaryScramble: Sync {
         hash(self.seed(), u64::from(dimension))
     }
 
-    /// The part of the randomisation that is a matrix: changes the columns of the dimension of `key`, once.
+    /// The part of the randomisation that is linear over the two-element field: changes the columns of the dimension of
+    /// `key`, once.
     fn prepare(&self, key: u64, columns: &mut Columns) {
         let _ = (key, columns);
     }
 
-    /// The rest of it, for every point: the scrambled digits. The first digit is the highest bit.
+    /// The rest of it, for every point: the scrambled digits, from those that the [prepared](Self::prepare) columns make.
+    /// The first scrambled digit is the highest bit.
     fn scramble(&self, key: u64, digits: u64) -> u64;
 }
 

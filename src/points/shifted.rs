@@ -9,7 +9,7 @@ use crate::hash::{hash, mix, unit};
 /// Every point becomes uniform. The randomisation for lattices and other sets that tile space; on digital nets
 /// and Halton's points it breaks elementary intervals, where their scrambles keep them.
 ///
-/// Coordinates are rounded to multiples of 2^-53 downwards, if they are none before.
+/// Exact where coordinates are multiples of 2^-53, as those of nets are; others are rounded to the nearest number below 1.
 ///
 /// ```
 /// use estimand::points::{Halton, PointSet, Shifted};
@@ -42,12 +42,13 @@ impl<P: PointSet> Shifted<P> {
     }
 }
 
-/// `u + shift` modulo 1. Where the sum rounds up to a whole, the largest number below 1 is taken.
+/// `u + shift` modulo 1. Multiples of 2^-53 in `[0, 1)` stay such, exactly; where another sum rounds up to 1, the largest number
+/// below is taken.
 #[inline]
 fn wrap(u: f64, shift: f64) -> f64 {
-    let sum = u + shift;
-    let wrapped = if sum >= 1.0 { sum - 1.0 } else { sum };
-    wrapped.min(BELOW_ONE)
+    let back = 1.0 - shift;
+    let sum = if u >= back { u - back } else { u + shift };
+    sum.min(BELOW_ONE)
 }
 
 impl<P: PointSet> PointSet for Shifted<P> {

@@ -34,8 +34,8 @@ pub use directions::DIMENSIONS;
 ///
 /// # Memory
 ///
-/// 512 bytes for a dimension, shared by all clones; also by all scrambled ones, unless they are scrambled by a
-/// matrix.
+/// 512 bytes for a dimension, shared by all clones; also by scrambled ones, unless [`LinearMatrix`](super::LinearMatrix)
+/// or [`HashedOwen`](super::HashedOwen) changes the matrices.
 ///
 /// ```
 /// use estimand::points::{PointSet, Sobol};
@@ -86,8 +86,8 @@ impl Sobol {
     }
 }
 
-impl<S> Sobol<S> {
-    /// The same points, randomised by `scramble` instead.
+impl Sobol {
+    /// The same points, randomised by `scramble`.
     pub fn scrambled<T: BinaryScramble>(self, scramble: T) -> Sobol<T> {
         let mut matrices = self.matrices;
         for (dimension, place) in (0..).zip(0..matrices.len()) {
@@ -109,7 +109,7 @@ impl<S: BinaryScramble> Sobol<S> {
         let mut digits = 0;
         let mut rest = index;
         while rest != 0 {
-            digits ^= columns[rest.trailing_zeros() as usize];
+            digits ^= columns[rest.trailing_zeros() as usize % 64];
             rest &= rest - 1;
         }
         digits
@@ -218,12 +218,15 @@ impl<S: BinaryScramble> Sobol<S> {
             .take(whole);
         for row in rows {
             let step = &steps[number as usize % STEPS];
-            let row = &mut row[..lanes];
-            for lane in 0..lanes {
-                let digits = self
-                    .scramble
-                    .scramble(keys[lane], digits[lane] ^ step[lane]);
-                row[lane] = unit(digits);
+            // Whole rows of lanes have a length that the compiler knows.
+            match row.first_chunk_mut::<LANES>() {
+                Some(row) if lanes == LANES => self.write(&keys, &digits, step, row),
+                _ => self.write(
+                    &keys[..lanes],
+                    &digits[..lanes],
+                    &step[..lanes],
+                    &mut row[..lanes],
+                ),
             }
             number = number.wrapping_add(1);
             if number.is_multiple_of(STEPS as u64) {
@@ -237,6 +240,15 @@ impl<S: BinaryScramble> Sobol<S> {
                     changed.trailing_ones(),
                 );
             }
+        }
+    }
+}
+
+impl<S: BinaryScramble> Sobol<S> {
+    #[inline(always)]
+    fn write(&self, keys: &[u64], digits: &[u64], step: &[u64], row: &mut [f64]) {
+        for (((u, step), &key), digits) in row.iter_mut().zip(step).zip(keys).zip(digits) {
+            *u = unit(self.scramble.scramble(key, digits ^ step));
         }
     }
 }

@@ -9,6 +9,17 @@ use crate::Error;
 /// One dimension; past it, independent hashed coordinates. The first `base^m` points lie at the multiples of `base^-m`,
 /// in an order such that every block of points is spread evenly.
 ///
+/// | index | in base 2 | mirrored | coordinate |
+/// |---|---|---|---|
+/// | 0 | 0 | 0.0 | 0 |
+/// | 1 | 1 | 0.1 | 1/2 |
+/// | 2 | 10 | 0.01 | 1/4 |
+/// | 3 | 11 | 0.11 | 3/4 |
+/// | 4 | 100 | 0.001 | 1/8 |
+/// | 5 | 101 | 0.101 | 5/8 |
+/// | 6 | 110 | 0.011 | 3/8 |
+/// | 7 | 111 | 0.111 | 7/8 |
+///
 /// Use it to see how low-discrepancy sequences work, and for integrals over an interval. Each coordinate is the
 /// nearest number to the exact fraction, however large the index.
 ///

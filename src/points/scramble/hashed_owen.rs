@@ -1,6 +1,6 @@
 //! Nested scrambling by a hash that carries only from earlier digits to later ones.
 
-use super::BinaryScramble;
+use super::{BinaryScramble, Columns};
 
 /// Nested scrambling, nearly uniform, in a few multiplications.[^laine] [^burley]
 ///
@@ -32,16 +32,27 @@ impl BinaryScramble for HashedOwen {
         self.seed
     }
 
+    /// Reverses the digits, once for all points.
+    fn prepare(&self, _: u64, columns: &mut Columns) {
+        *columns = columns.map(u64::reverse_bits);
+    }
+
     #[inline(always)]
-    fn scramble(&self, key: u64, digits: u64) -> u64 {
-        scramble(digits, key)
+    fn scramble(&self, key: u64, reversed: u64) -> u64 {
+        scramble_reversed(reversed, key)
     }
 }
 
 /// The nested scramble that `key`, which must be well mixed, selects.
 #[inline(always)]
 pub(in crate::points) fn scramble(digits: u64, key: u64) -> u64 {
-    laine_karras(digits.reverse_bits(), key).reverse_bits()
+    scramble_reversed(digits.reverse_bits(), key)
+}
+
+/// The same of digits whose first is the lowest bit; in the result it is the highest.
+#[inline(always)]
+pub(in crate::points) fn scramble_reversed(reversed: u64, key: u64) -> u64 {
+    laine_karras(reversed, key).reverse_bits()
 }
 
 /// A keyed bijection of words in which a bit depends on no higher bit. The key must be well mixed.
@@ -58,4 +69,41 @@ fn laine_karras(mut word: u64, key: u64) -> u64 {
     word ^= word.wrapping_mul(0xd6e8_feb8_0552_6c56);
     word ^= word.wrapping_mul(0xa0761d6478bd642e_u64 & !1);
     word
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hash::hash;
+
+    #[test]
+    fn later_digits_change_nothing_before_them() {
+        for key in (0..50).map(|key| hash(1, key)) {
+            for digit in 0..64 {
+                let word = hash(2, key);
+                let changed = scramble(word, key) ^ scramble(word ^ 1 << (63 - digit), key);
+                assert_eq!(changed.leading_zeros(), digit);
+            }
+        }
+    }
+
+    #[test]
+    fn a_digit_flips_each_later_one_about_half_the_time() {
+        // Over 4096 pairs of words that differ in one digit, a later digit changes 2048 times with a standard
+        // deviation of 32; a deviation of 6 of them has a probability of 2e-9, in each of 1400 cases. The hash is
+        // approximate: 12 are allowed, a bias of less than a tenth. The first 53 digits are what a coordinate keeps.
+        for digit in 0..52_u32 {
+            let mut flips = [0_i32; 64];
+            for sample in 0..4096 {
+                let (word, key) = (hash(3, sample), hash(4, sample));
+                let changed = scramble(word, key) ^ scramble(word ^ 1 << (63 - digit), key);
+                for (place, flips) in flips.iter_mut().enumerate() {
+                    *flips += i32::from(changed << place >> 63 == 1);
+                }
+            }
+            for &flips in &flips[digit as usize + 1..53] {
+                assert!((flips - 2048).abs() < 384, "{digit}: {flips}");
+            }
+        }
+    }
 }

@@ -4,12 +4,15 @@
     python reference/discrepancy.py values > reference/discrepancy.json
     cargo build --release --all-features --example discrepancy
     python reference/discrepancy.py speed
+    cargo bench --all-features --bench discrepancy && python reference/discrepancy.py growth
 
 `values` prints small sets of points, whose coordinates are whole multiples of 1/1024, with their squared L2
 discrepancies: in exact rational arithmetic from the definitions as double sums, and by scipy where it has them.
 `speed` measures scipy and the crate's program on the same points in turns, and prints the least of the times.
+`growth` fits powers of the count to the least times that criterion has kept.
 """
 
+import glob
 import json
 import os
 import subprocess
@@ -17,7 +20,7 @@ import sys
 import tempfile
 import time
 from fractions import Fraction as F
-from math import prod
+from math import log, prod
 
 import numpy
 import scipy
@@ -171,8 +174,30 @@ def speed(repeats=5):
         )
 
 
+def growth():
+    root = os.path.join(os.path.dirname(__file__), "..", "target", "criterion")
+    groups = {}
+    for path in glob.glob(os.path.join(root, "*", "*", "new", "benchmark.json")):
+        with open(path) as file:
+            benchmark = json.load(file)
+        if not benchmark["group_id"].startswith(("Star::", "L2::")):
+            continue
+        with open(path.replace("benchmark.json", "sample.json")) as file:
+            sample = json.load(file)
+        least = min(t / i for t, i in zip(sample["times"], sample["iters"])) / 1e6
+        groups.setdefault(benchmark["group_id"], []).append((int(benchmark["value_str"]), least))
+    print("| | n: ms | growth |\n|---|---|---|")
+    for name, times in sorted(groups.items()):
+        times.sort()
+        xs, ys = [log(n) for n, _ in times], [log(t) for _, t in times]
+        x, y = sum(xs) / len(xs), sum(ys) / len(ys)
+        slope = sum((a - x) * (b - y) for a, b in zip(xs, ys)) / sum((a - x) ** 2 for a in xs)
+        shown = ", ".join(f"{n}: {t:.3g}" for n, t in times)
+        print(f"| {name} | {shown} | n^{slope:.2f} |")
+
+
 if __name__ == "__main__":
-    commands = {"values": values, "speed": speed}
+    commands = {"values": values, "speed": speed, "growth": growth}
     if len(sys.argv) != 2 or sys.argv[1] not in commands:
         sys.exit(__doc__)
     commands[sys.argv[1]]()

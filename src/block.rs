@@ -72,9 +72,12 @@ impl<V: Value> Block<V> {
         let mut ordinary = self.first.is_finite();
         let mean = self.first.zip(self.sum, |first, sum| first + sum / count);
         let root = self.squares.zip(self.sum, |squares, sum| {
-            let constant = squares == 0.0 && sum == 0.0;
-            ordinary &= constant || ORDINARY.contains(&squares);
             (squares - sum * (sum / count)).max(0.0).sqrt()
+        });
+        let range = self.high.zip(self.low, |high, low| high - low);
+        let _ = range.zip(self.squares, |range, squares| {
+            ordinary &= range == 0.0 || ORDINARY.contains(&squares);
+            range
         });
         ordinary.then(|| Piece {
             moments: Moments::from_parts(self.count, mean, root),

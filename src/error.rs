@@ -95,8 +95,8 @@ impl core::error::Error for Error {}
 pub struct Incomplete<V> {
     /// Why it stopped.
     pub reason: Error,
-    /// The estimate from all points before the one that stopped it, in the order of their indices;
-    /// `None` if there were none.
+    /// The estimate from the points before the one that stopped it, in the order of their indices; of replicates, from those
+    /// that were complete, if any was. `None` if there were none.
     pub so_far: Option<Box<Estimate<V>>>,
 }
 

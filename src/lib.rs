@@ -77,7 +77,7 @@
 //!
 //! - Sampling is for many dimensions, kinks, jumps and odd domains. A smooth integrand in up to some five
 //!   dimensions belongs to deterministic cubature, which is orders of magnitude more exact.
-//! - Coordinates are multiples of 2^-53 or coarser: a peak narrower than that is not seen by any point.
+//! - Coordinates have a resolution of 2^-53, but near 0 in some sets: a peak narrower than that is seen by no point.
 //! - An estimate is only as good as its finite variance: where the square of the integrand has no integral,
 //!   error bars are too small, whatever their kind.
 //! - The integrand must be pure; a closure that counts its calls may see some points twice.

@@ -161,7 +161,8 @@ fn norm(a: f64, b: f64) -> f64 {
 fn scaled_norm(a: f64, b: f64) -> f64 {
     let scale = a.abs().max(b.abs());
     if scale == 0.0 || !scale.is_finite() {
-        return scale;
+        // The sum, since the larger of a number and NaN is the number.
+        return a.abs() + b.abs();
     }
     let (a, b) = (a / scale, b / scale);
     scale * (a * a + b * b).sqrt()

@@ -1,8 +1,10 @@
 //! The only parallel loop: jobs are fixed by the count alone and their results taken in the order of
 //! their indices, so that neither the number of threads nor the feature `parallel` changes a bit.
 
-/// Jobs whose results are held at once: enough to keep any machine busy, few enough to bound the memory.
-const WAVE: u64 = 1024;
+/// Jobs whose results are held at once: few at first, so that a run that has to stop early does so; then more,
+/// enough to keep any machine busy and few enough to bound the memory.
+const FIRST_WAVE: u64 = 16;
+const LARGEST_WAVE: u64 = 1024;
 
 /// Runs `job` for `0..count` and hands the results to `take` in the order of their indices.
 ///
@@ -15,13 +17,14 @@ pub(crate) fn in_order<T: Send, E>(
     if count == 1 {
         return take(job(0));
     }
-    let mut first = 0;
+    let (mut first, mut length) = (0, FIRST_WAVE);
     while first < count {
-        let last = count.min(first.saturating_add(WAVE));
+        let last = count.min(first.saturating_add(length));
         wave(first..last, &job)
             .into_iter()
             .try_for_each(&mut take)?;
         first = last;
+        length = LARGEST_WAVE.min(2 * length);
     }
     Ok(())
 }

@@ -47,7 +47,7 @@ impl<S: Sampler + ?Sized> Sampler for &mut S {
     }
 }
 
-/// One point of a [`PointSet`], from its first dimension on.
+/// One point of a [`PointSet`], from its first dimension on; reading more than 2^32 - 1 coordinates panics.
 ///
 /// Made by [`PointSet::point`]. An estimator may hand over coordinates that it has computed in a
 /// block ([`with_prefix`](Self::with_prefix)); past them every coordinate is asked of the set. Which of

@@ -116,6 +116,49 @@ fn single_precision_values_are_averaged_in_double() {
 }
 
 #[test]
+fn nan_is_never_lost() {
+    for place in 0..3 {
+        let mut values = [1.0, 2.0, 3.0];
+        values[place] = f64::NAN;
+        let moments: Moments<f64> = values.into_iter().collect();
+        assert!(
+            moments.mean().is_nan() && moments.std_error().unwrap().is_nan(),
+            "{place}"
+        );
+    }
+}
+
+#[test]
+fn spread_too_small_for_its_squares_is_not_taken_for_none() {
+    // 0, +s and -s in turn: the sums cancel, the squares underflow.
+    struct Thirds;
+    impl PointSet for Thirds {
+        fn coordinate(&self, index: u64, _: u32) -> f64 {
+            (index % 3) as f64 / 3.0
+        }
+    }
+    let f = cube(|[x]| {
+        if x < 0.3 {
+            0.0
+        } else if x < 0.6 {
+            1e-200
+        } else {
+            -1e-200
+        }
+    });
+    let replicated = Average::new(Thirds, 999).estimate(&f).unwrap();
+    assert_eq!(replicated.mean, 0.0);
+    let estimate = MonteCarlo::new(999, 1).estimate(&f).unwrap();
+    // The standard deviation is sqrt(2/3) 1e-200, within 6 times its own 1 %.
+    let expected = (2.0_f64 / 3.0 / 999.0).sqrt();
+    assert_relative_eq!(
+        estimate.std_error.unwrap() / 1e-200,
+        expected,
+        max_relative = 0.1
+    );
+}
+
+#[test]
 fn fewer_than_two_values_have_no_spread() {
     let mut moments = Moments::<f64>::new();
     assert_eq!(

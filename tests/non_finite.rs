@@ -166,7 +166,7 @@ fn arguments_that_make_no_estimate_are_refused_by_name() {
                 .estimate(&f)
                 .unwrap_err()
         ),
-        "the number of replicates must be at least 2; it was 1"
+        "the number of replicates must be 2 to 2^24; it was 1"
     );
     let same = Replicated::new(3, 10, |_| Independent::new(1))
         .estimate(&f)

@@ -85,8 +85,8 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Replicated<F> {
         F: 'a;
 
     fn sources(&self) -> Result<Vec<P>, Error> {
-        if self.replicates < 2 {
-            let domain = "at least 2";
+        if !(2..=MOST_REPLICATES).contains(&self.replicates) {
+            let domain = "2 to 2^24";
             return Err(Error::refused(
                 "number of replicates",
                 domain,
@@ -151,6 +151,9 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Replicated<F> {
 
 tallied!([P: PointSet, F: Fn(u64) -> P] Replicated<F>);
 
+/// More sets than this are an argument gone wrong, not a plan.
+const MOST_REPLICATES: u64 = 1 << 24;
+
 /// Refuses two replicates that begin with the same points.
 fn distinct<P: PointSet>(sets: &[P]) -> Result<(), Error> {
     // A few coordinates tell randomised sets apart: two that are independent agree in a coordinate
@@ -169,13 +172,26 @@ fn distinct<P: PointSet>(sets: &[P]) -> Result<(), Error> {
         })
         .collect();
     fingerprints.sort_unstable();
-    match fingerprints.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+    let set = |replicate: u64| &sets[usize::try_from(replicate).expect("it is in memory")];
+    let identical =
+        |pair: &&[(u64, u64)]| pair[0].0 == pair[1].0 && alike(set(pair[0].1), set(pair[1].1));
+    match fingerprints.windows(2).find(identical) {
         Some(pair) => Err(Error::IdenticalReplicates {
             first: pair[0].1,
             second: pair[1].1,
         }),
         None => Ok(()),
     }
+}
+
+/// Whether two sets of which a few coordinates agree agree in many: coarse coordinates may do so by chance.
+fn alike<P: PointSet>(a: &P, b: &P) -> bool {
+    const POINTS: u64 = 64;
+    const DIMENSIONS: u32 = 8;
+    (0..POINTS.min(a.size().unwrap_or(POINTS))).all(|index| {
+        (0..DIMENSIONS.min(a.dimensions()))
+            .all(|d| a.coordinate(index, d) == b.coordinate(index, d))
+    })
 }
 
 impl<F> fmt::Debug for Replicated<F> {

@@ -28,20 +28,21 @@ impl Survival {
     ///
     /// # Errors
     ///
-    /// [`Error::Refused`] for a probability outside `(0, 1]`, NaN included, and for one below 1e-300, whose
-    /// inverse is not to be represented.
+    /// [`Error::Refused`] for a probability outside `(0, 1]`, NaN included, and for one below about 6e-309, whose
+    /// inverse is infinite.
     #[inline]
     pub fn new(probability: f64) -> Result<Self, Error> {
-        if !(1e-300..=1.0).contains(&probability) {
+        let weight = 1.0 / probability;
+        if !(probability > 0.0 && probability <= 1.0 && weight.is_finite()) {
             return Err(Error::refused(
                 "survival probability",
-                "in (0, 1], 1e-300 at least",
+                "in (0, 1], its inverse finite",
                 probability,
             ));
         }
         Ok(Self {
             probability,
-            weight: 1.0 / probability,
+            weight,
         })
     }
 
@@ -52,7 +53,9 @@ impl Survival {
 
     /// The weight of a survivor, `1 / probability`; `None` for what does not survive.
     ///
-    /// `u` is a coordinate in `[0, 1)`. The mean over `u` of the weight, zero for `None`, is 1.
+    /// `u` is a coordinate in `[0, 1)`. The mean over `u` of the weight, zero for `None`, is 1, but for this limit: coordinates are multiples
+    /// of 2^-53 at the finest that all sets have, so that a probability is met to 2^-53 at best, which is 1e-7 of 1e-9
+    /// and all of 1e-16.
     #[inline]
     #[must_use]
     pub fn play(self, u: f64) -> Option<f64> {
@@ -123,7 +126,7 @@ impl<I: Integrand> Integrand for Roulette<I> {
         let Some(weight) = self.survival.play(u.next_1d()) else {
             return self.otherwise;
         };
-        // (x - (1 - p) c) / p, written so that c = 0 gives x / p to the bit.
+        // (x - (1 - p) c) / p
         let lost = weight - 1.0;
         self.integrand
             .evaluate(u)

@@ -196,8 +196,8 @@ impl<S: DigitScramble> Halton<S> {
                 if let Some(table) = &tables[lane] {
                     base.inverses(&self.scramble, key, table, index, column);
                 } else {
-                    for (index, u) in (index..).zip(&mut column[..points]) {
-                        *u = base.inverse(&self.scramble, key, index);
+                    for (place, u) in (0..).zip(&mut column[..points]) {
+                        *u = base.inverse(&self.scramble, key, index.wrapping_add(place));
                     }
                 }
             }

@@ -27,6 +27,9 @@ pub struct Independent {
 }
 
 impl Independent {
+    /// "columns" in ASCII.
+    const COLUMNS: u64 = 0x63_6f6c_756d_6e73;
+
     /// The points that `seed` selects.
     pub const fn new(seed: u64) -> Self {
         Self { seed }
@@ -53,7 +56,8 @@ impl Independent {
     /// What the coordinates in `dimension` have in common.
     #[inline]
     fn column(&self, dimension: u32) -> u64 {
-        hash(!self.seed, u64::from(dimension))
+        // Not a key that is made from the seed as the row's is: rows and columns would be interchangeable.
+        hash(hash(self.seed, Self::COLUMNS), u64::from(dimension))
     }
 
     /// Writes the coordinates in `dimensions` into the columns of the block from `start` on.
@@ -74,8 +78,8 @@ impl Independent {
                         narrow(self, block, &columns[..width], start);
                         return;
                     }
-                    for (index, row) in (block.first..).zip(block.out.chunks_exact_mut(stride)) {
-                        let common = self.row(index);
+                    for (place, row) in (0..).zip(block.out.chunks_exact_mut(stride)) {
+                        let common = self.row(block.first.wrapping_add(place));
                         for (u, &column) in row[start..start + width].iter_mut().zip(&columns) {
                             *u = unit(mix(common.wrapping_add(column)));
                         }

@@ -71,6 +71,7 @@ impl<P: PointSet, Q: PointSet> PointSet for Padded<P, Q> {
     }
 
     fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+        super::check(first, &dimensions, out);
         let seam = self.dimensions;
         if dimensions.end <= seam {
             return self.first.fill(first, dimensions, out);

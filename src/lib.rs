@@ -105,6 +105,7 @@ mod progressive;
 mod quantile;
 mod reduce;
 mod sampler;
+mod stratum;
 mod tallied;
 mod tally;
 mod value;

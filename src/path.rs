@@ -29,7 +29,6 @@
 //! | [`Scene`], [`Object`] | shapes, and what they do to light |
 //! | [`shape`], [`bsdf`], [`light`], [`sensor`] | one kind of shape, scattering, source and camera a file |
 //! | [`Paths::radiance`] | the rendering equation |
-//! | [`mis`] | weights of multiple importance sampling |
 //! | [`Image`] | pictures, their errors, their files |
 //! | [`scenes`] | the Cornell box and others, as `reference/scenes` has them for Mitsuba |
 //!
@@ -47,7 +46,6 @@ mod frame;
 mod geometry;
 pub mod image;
 pub mod light;
-pub mod mis;
 mod radiance;
 mod ray;
 mod render;

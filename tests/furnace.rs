@@ -481,3 +481,35 @@ fn parts_must_fit_their_types() {
         .unwrap();
     assert_eq!((picture.height(), picture.mean().x), (3, 0.0));
 }
+
+/// Also without the feature `parallel`: the bits are those of one thread there.
+#[cfg(feature = "parallel")]
+#[test]
+fn a_picture_has_the_same_bits_with_any_number_of_threads() {
+    let picture = |threads, seed| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            scenes::cornell_box()
+                .render([16; 2], seed, |seed| MonteCarlo::new(32, seed))
+                .unwrap()
+        })
+    };
+    let one = picture(1, 7);
+    assert_eq!(one, picture(2, 7));
+    assert_eq!(one, picture(5, 7));
+    assert_ne!(one, picture(1, 8));
+}
+
+#[test]
+fn a_picture_that_is_stopped_keeps_its_rows() {
+    let view = scenes::cornell_box();
+    let plain = |seed| MonteCarlo::new(4, seed);
+    let whole = view.render([8; 2], 1, plain).unwrap();
+    let part = view.render_while([8; 2], 1, plain, |row| row < 5).unwrap();
+    let (kept, left_out) = part.pixels().split_at(5 * 8);
+    assert_eq!(kept, &whole.pixels()[..5 * 8]);
+    assert!(left_out.iter().all(|pixel| *pixel == glam::DVec3::ZERO));
+}

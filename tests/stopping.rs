@@ -3,6 +3,7 @@
 use core::ops::ControlFlow;
 use std::time::Duration;
 
+use estimand::estimators::Vegas;
 use estimand::points::{Independent, NRooks, Stratified};
 use estimand::{
     Average, Error, Estimator, Integrand, MonteCarlo, NonFinite, Progressive, Replicated, Sampler,
@@ -57,7 +58,7 @@ where
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..Default::default() })]
 
     #[test]
     fn pieces_are_one_run(
@@ -69,6 +70,7 @@ proptest! {
         in_pieces(&MonteCarlo::new(count, seed), &Walk, &cuts);
         in_pieces(&MonteCarlo::new(count, seed).non_finite(NonFinite::Reject), &Rough, &cuts);
         in_pieces(&Average::new(Independent::new(seed), count), &Walk, &cuts);
+        in_pieces(&Vegas::new(2, count + 40, seed).unwrap(), &Walk, &cuts);
         in_pieces(
             &Replicated::new(3, count, Independent::new).seed(seed).non_finite(NonFinite::Reject),
             &Rough,

@@ -6,11 +6,16 @@
 //! cases, and the whole file makes some 2000 comparisons: a false alarm in about 1e-5 of all choices of the seeds, which
 //! are fixed.
 
-use estimand::integrands::Roulette;
+use estimand::estimators::{Bounded, Strata, Vegas};
+use estimand::integrands::{
+    Antithetic, ControlVariate, Heuristic, Importance, ImportanceMap, Joint, Mapped, Mixture,
+    MultiSample, Roulette, Splitting, Staged,
+};
 use estimand::points::{
     DigitPermutation, DigitalShift, Folded, Halton, Hammersley, HashedOwen, Independent,
     LinearMatrix, NRooks, Owen, PointSet, Shifted, Sobol, Stratified,
 };
+use estimand::warp::Warp;
 use estimand::{Average, Estimator, Integrand, Moments, MonteCarlo, Replicated, Sampler};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -31,7 +36,17 @@ impl Integrand for Random {
     type Value = f64;
 
     fn evaluate<S: Sampler>(&self, u: &mut S) -> f64 {
-        let x: [f64; DIMENSIONS] = std::array::from_fn(|_| u.next_1d());
+        self.at(std::array::from_fn(|_| u.next_1d()))
+    }
+
+    fn dimensions(&self) -> u32 {
+        3
+    }
+}
+
+impl Random {
+    /// The value at a point.
+    fn at(&self, x: [f64; DIMENSIONS]) -> f64 {
         let polynomial: f64 = self
             .terms
             .iter()
@@ -46,12 +61,6 @@ impl Integrand for Random {
         polynomial + if x[1] < self.cut { self.step } else { 0.0 }
     }
 
-    fn dimensions(&self) -> u32 {
-        3
-    }
-}
-
-impl Random {
     /// The integral of a monomial over the part of the cube where the second coordinate is below `cut`.
     fn monomial(powers: [u8; DIMENSIONS], cut: f64) -> f64 {
         let whole: f64 = powers.iter().map(|&a| 1.0 / (f64::from(a) + 1.0)).product();
@@ -253,5 +262,174 @@ proptest! {
         check("roulette on n-rooks", &roulette, f.mean(), |seed| {
             Average::new(NRooks::new(16, seed).expect("valid"), 16)
         })?;
+    }
+}
+
+/// The random integrand with the first coordinate as its control.
+struct Controlled<'a>(&'a Random);
+
+impl Integrand for Controlled<'_> {
+    type Value = (f64, f64);
+
+    fn evaluate<S: Sampler>(&self, u: &mut S) -> (f64, f64) {
+        let mut seen = [0.0; DIMENSIONS];
+        seen.fill_with(|| u.next_1d());
+        (self.0.at(seen), seen[0])
+    }
+}
+
+/// The random integrand with its last coordinate as a second stage, and a constant from the first.
+struct Stages<'a>(&'a Random);
+
+impl Staged for Stages<'_> {
+    type Value = f64;
+    type State = [f64; 2];
+
+    fn first<S: Sampler>(&self, u: &mut S) -> (f64, [f64; 2]) {
+        let state = u.next_2d();
+        (state[0], state)
+    }
+
+    fn second<S: Sampler>(&self, &[x, y]: &[f64; 2], u: &mut S) -> f64 {
+        self.0.at([x, y, u.next_1d()])
+    }
+}
+
+/// Density `1/2 + x` or its mirror image along each axis of the cube.
+#[derive(Clone, Copy)]
+struct Ramp {
+    mirrored: bool,
+}
+
+impl Warp<DIMENSIONS> for Ramp {
+    type Point = [f64; DIMENSIONS];
+
+    fn sample(&self, u: [f64; DIMENSIONS]) -> [f64; DIMENSIONS] {
+        // The root of x^2 / 2 + x / 2 = u.
+        u.map(|u| {
+            let x = 0.5 * ((1.0 + 8.0 * u).sqrt() - 1.0);
+            if self.mirrored { 1.0 - x } else { x }
+        })
+    }
+
+    fn density(&self, x: [f64; DIMENSIONS]) -> f64 {
+        x.iter()
+            .map(|x| if self.mirrored { 1.5 - x } else { 0.5 + x })
+            .product()
+    }
+
+    fn invert(&self, _: [f64; DIMENSIONS]) -> Option<[f64; DIMENSIONS]> {
+        None
+    }
+}
+
+const RAMPS: [Ramp; 2] = [Ramp { mirrored: false }, Ramp { mirrored: true }];
+
+proptest! {
+    #![proptest_config(config(16))]
+
+    #[test]
+    fn importance_and_its_mixtures_keep_the_mean(f in random(), share in 0.1..0.9) {
+        let truth = f.mean();
+        let at = |x: [f64; DIMENSIONS]| f.at(x);
+        let importance = Importance::new(RAMPS[0], at);
+        check("importance", &importance, truth, |seed| MonteCarlo::new(64, seed))?;
+        let mixture = Mixture::new(&[share, 1.0 - share], RAMPS).expect("weights");
+        let mixed = Importance::new(mixture, at);
+        check("mixture", &mixed, truth, |seed| MonteCarlo::new(64, seed))?;
+        check("mixture on nets", &mixed, truth, |seed| {
+            Average::new(sobol().scrambled(Owen { seed }), 16)
+        })?;
+        for heuristic in [Heuristic::Balance, Heuristic::Power] {
+            let several = MultiSample::new(RAMPS, [1, 2], heuristic, at).expect("counts");
+            check("multi-sample", &several, truth, |seed| MonteCarlo::new(32, seed))?;
+        }
+    }
+
+    #[test]
+    fn antithetic_pairs_and_controls_keep_the_mean(f in random(), b in -3.0..3.0) {
+        let truth = f.mean();
+        let antithetic = Antithetic::new(&f);
+        check("antithetic", &antithetic, truth, |seed| MonteCarlo::new(32, seed))?;
+        check("antithetic on nets", &antithetic, truth, |seed| {
+            Average::new(sobol().scrambled(Owen { seed }), 16)
+        })?;
+        let controlled = ControlVariate::new(Controlled(&f), 0.5, b);
+        check("control", &controlled, truth, |seed| MonteCarlo::new(64, seed))?;
+        // The pilot's points are part of the experiment: another pilot in every run.
+        let (mut means, mut variances) = (Moments::new(), Moments::new());
+        for seed in 0..RUNS {
+            let learned = ControlVariate::pilot(Controlled(&f), 0.5, 64, !seed).expect("finite");
+            let estimate = MonteCarlo::new(64, seed).estimate(&learned).expect("finite");
+            means.push(estimate.mean);
+            variances.push(estimate.std_error.expect("independent points").powi(2));
+        }
+        prop_assert!(sigmas(&means, truth).abs() < LIMIT, "control by pilot: {}", means.mean());
+        // The best coefficient loses nothing but what 64 points do not tell: some 1/64 of the variance.
+        let spread = variances.std_error().expect("many runs");
+        prop_assert!(variances.mean() < f.variance() / 64.0 * 1.04 + LIMIT * spread);
+    }
+
+    #[test]
+    fn splitting_keeps_the_mean_and_has_the_variance_of_its_formula(
+        f in random(),
+        rate in prop_oneof![0.05..1.0, (1_u32..9).prop_map(f64::from)],
+        odd in 1.0..6.0,
+    ) {
+        let truth = f.mean() + 0.5;
+        let stages = Stages(&f);
+        let splitting = Splitting::new(Stages(&f), rate).expect("a rate");
+        let means = check("splitting", &splitting, truth, |seed| MonteCarlo::new(64, seed))?;
+        let mut pilot = Splitting::pilot(&stages, 40_000, 5).expect("a count");
+        (pilot.first_cost, pilot.second_cost) = (0.0, 1.0 / rate);
+        let variance = means.variance().expect("many runs") * 64.0;
+        let off = (variance / pilot.work(rate) - 1.0) / (2.0 / (RUNS - 1) as f64).sqrt();
+        prop_assert!(off.abs() < LIMIT + 1.0, "variance {variance}, formula {}", pilot.work(rate));
+        let odd = Splitting::new(stages, odd).expect("a rate");
+        check("splitting, not whole", &odd, truth, |seed| MonteCarlo::new(64, seed))?;
+    }
+
+    #[test]
+    fn strata_and_adapted_points_keep_the_mean(f in random()) {
+        let truth = f.mean();
+        check("strata", &f, truth, |seed| Strata::new(2, 3, 64, seed).expect("valid"))?;
+        check("strata, two axes", &f, truth, |seed| Strata::new(3, 2, 64, seed).expect("valid"))?;
+        check("strata, neyman", &f, truth, |seed| {
+            Strata::new(2, 3, 160, seed).expect("valid").neyman()
+        })?;
+        check("bounded", &f, truth, |seed| Bounded::new(64, seed, -20.0, 20.0).expect("valid"))?;
+        check("vegas", &f, truth, |seed| Vegas::new(3, 800, seed).expect("valid"))?;
+        check("vegas, one axis and one bin", &f, truth, |seed| {
+            Vegas::new(1, 400, seed).expect("valid").map(ImportanceMap::identity(1, 1).expect("valid"))
+        })?;
+        let map = Vegas::new(3, 4000, 9).expect("valid").train(&f).expect("finite");
+        let mapped = Mapped::new(&f, &map);
+        check("mapped", &mapped, truth, |seed| MonteCarlo::new(64, seed))?;
+        check("mapped nets", &mapped, truth, |seed| {
+            Average::new(sobol().scrambled(Owen { seed }), 16)
+        })?;
+    }
+
+    #[test]
+    fn covariances_are_those_of_the_means(f in random()) {
+        // With the first coordinate, whose mean is 1/2 and whose variance is 1/12.
+        struct Pair<'a>(&'a Random);
+        impl Integrand for Pair<'_> {
+            type Value = [f64; 2];
+            fn evaluate<S: Sampler>(&self, u: &mut S) -> [f64; 2] {
+                let (f, x) = Controlled(self.0).evaluate(u);
+                [f, x]
+            }
+        }
+        let joint = Joint::new(Pair(&f));
+        let (mut products, mut claims) = (Moments::new(), Moments::new());
+        for seed in 0..RUNS {
+            let estimate = MonteCarlo::new(64, seed).estimate(&joint).expect("finite");
+            let [a, b] = estimate.means();
+            products.push((a - f.mean()) * (b - 0.5));
+            claims.push(estimate.covariance().expect("independent points")[0][1]);
+        }
+        let spread = products.std_error().expect("many runs").hypot(claims.std_error().expect("many runs"));
+        prop_assert!((products.mean() - claims.mean()).abs() < LIMIT * spread);
     }
 }

@@ -64,9 +64,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let reference = reference(arguments.size)?;
     std::fs::create_dir_all(&arguments.out)
         .map_err(|error| format!("{}: {error}", arguments.out.display()))?;
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads)
-        .build_global()?;
+    use_threads(arguments.threads)?;
     static STOP: AtomicBool = AtomicBool::new(false);
     ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed))?;
 
@@ -107,6 +105,34 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Sets the number of threads; 0 for as many as there are processors.
+#[cfg(feature = "parallel")]
+fn use_threads(threads: usize) -> Result<(), Box<dyn Error>> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()?;
+    Ok(())
+}
+
+/// Without the feature `parallel` there is one thread.
+#[cfg(not(feature = "parallel"))]
+fn use_threads(threads: usize) -> Result<(), Box<dyn Error>> {
+    match threads {
+        0 | 1 => Ok(()),
+        _ => Err(format!("built without the feature `parallel`: no {threads} threads").into()),
+    }
+}
+
+#[cfg(feature = "parallel")]
+fn threads_in_use() -> usize {
+    rayon::current_num_threads()
+}
+
+#[cfg(not(feature = "parallel"))]
+fn threads_in_use() -> usize {
+    1
+}
+
 /// The reference at the given size, with its standard errors.
 fn reference(size: u32) -> Result<Image, Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -136,11 +162,12 @@ fn data(arguments: &Arguments, noise: f64, curves: &[Curve]) -> serde_json::Valu
         "reference_rmse": noise,
         "size": arguments.size,
         "seed": arguments.seed,
-        "threads": rayon::current_num_threads(),
+        "threads": threads_in_use(),
         "curves": curves.iter().map(|curve| json!({
             "points": curve.points.name(),
             "samples": curve.samples.iter().map(sample).collect::<Vec<_>>(),
             "slope": curve.slope(noise),
+            "slope_over_samples": curve.slope_over_samples(noise),
         })).collect::<Vec<_>>(),
     })
 }

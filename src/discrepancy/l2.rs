@@ -7,7 +7,7 @@ mod pairs;
 mod updatable;
 
 use self::compensated::Compensated;
-use self::kernel::{Centred, Extreme, Kernel, Mixture, Star, Symmetric, WrapAround};
+use self::kernel::{Centred, Diaphony, Extreme, Kernel, Mixture, Star, Symmetric, WrapAround};
 use self::pairs::Tiles;
 use super::Points;
 use crate::Error;
@@ -84,6 +84,15 @@ pub enum L2 {
     /// [^morokoff]: Morokoff, William; Caflisch, Russel (1994). *Quasi-Random Sequences and Their Discrepancies*.
     ///     <https://doi.org/10.1137/0915077>
     Extreme,
+    /// The diaphony: no boxes but waves, `D^2 = sum_f prod_k max(1, |f_k|)^-2 |1/n sum_i exp(2 pi j f x_i)|^2` over all whole
+    /// frequencies `f` but 0.[^zinterhof]
+    ///
+    /// With `t = |x - y|`: `K = 1 + 2 pi^2 (t^2 - t + 1/6)`, `h = c = 1`. Not normalised: a single point has a square of
+    /// `(1 + pi^2 / 3)^d - 1`.
+    ///
+    /// [^zinterhof]: Zinterhof, Peter (1976). *Über einige Abschätzungen bei der Approximation von Funktionen mit
+    ///     Gleichverteilungsmethoden*. Sitzungsberichte der Österreichischen Akademie der Wissenschaften II 185.
+    Diaphony,
 }
 
 /// Evaluates an expression with `$K` the kernel of a kind.
@@ -112,6 +121,10 @@ macro_rules! with_kernel {
             }
             L2::Extreme => {
                 type $K = Extreme;
+                $value
+            }
+            L2::Diaphony => {
+                type $K = Diaphony;
                 $value
             }
         }

@@ -178,7 +178,8 @@ impl<R: Rng + SeedableRng> Source for Streams<R> {
     }
 }
 
-fn seeded<R: SeedableRng>(key: u64) -> R {
+/// A generator with all the bits of its seed hashed from `key`.
+pub(super) fn seeded<R: SeedableRng>(key: u64) -> R {
     let mut seed = R::Seed::default();
     for (word, bytes) in (0..).zip(seed.as_mut().chunks_mut(8)) {
         bytes.copy_from_slice(&hash::hash(key, word).to_le_bytes()[..bytes.len()]);

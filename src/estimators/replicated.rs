@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::Median;
 use super::average::whole;
 use crate::points::PointSet;
 use crate::tallied::{Tallied, tallied};
@@ -57,6 +58,11 @@ impl<P: PointSet, F: Fn(u64) -> P> Replicated<F> {
             seed: 0,
             non_finite: NonFinite::Fail,
         }
+    }
+
+    /// The median of the averages in the place of their mean.
+    pub const fn median(self) -> Median<F> {
+        Median::new(self)
     }
 
     /// The same with other seeds for the replicates; the default is 0.

@@ -4,10 +4,9 @@ use glam::{Vec3, Vec3A};
 
 use super::bsdf::Bsdf;
 use super::light::{Environment, Light};
-use super::mis::power;
 use super::scene::{Scene, Segment};
 use super::{Ray, Vertex};
-use crate::integrands::Survival;
+use crate::integrands::{Heuristic, Survival};
 use crate::{Error, Sampler};
 
 /// Which paths of light are followed.
@@ -129,4 +128,13 @@ impl Paths {
         }
         radiance.into()
     }
+}
+
+/// The weight of a sample that was drawn with density `own`, where another technique has the density `other`: the
+/// power heuristic. The density of a direction without alternative is infinite, its weight 1.
+#[inline]
+fn power(own: f32, other: f32) -> f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+    let weight = Heuristic::Power.weight(own.into(), &[other.into()]) as f32;
+    weight
 }

@@ -298,7 +298,7 @@ fn tails_of_students_t() {
             "{freedom} {t}"
         );
     }
-    let far = 1e8;
+    let far: f64 = 1e8;
     let cauchy = 2.0 / std::f64::consts::PI * (1.0 / far).atan();
     assert!((two_sided(-far, 1.0) / cauchy - 1.0).abs() < 1e-6);
     assert_eq!(two_sided(0.0, 7.0), 1.0);

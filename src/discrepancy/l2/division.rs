@@ -49,7 +49,7 @@ pub(super) fn sum(points: &Points<'_>) -> Compensated {
         halvings += 1;
     }
     in_order(parts.len(), &mut total, |job, sum| {
-        within(&parts[job], 1.0, sum)
+        within(&parts[job], 1.0, sum);
     });
     total
 }
@@ -310,5 +310,34 @@ impl List {
             }
         }
         (below, above)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::discrepancy::l2::kernel::Star;
+    use crate::discrepancy::l2::pairs::Tiles;
+    use crate::points::{Independent, PointSet};
+
+    #[test]
+    fn dividing_and_taking_all_pairs_give_the_same_sum() {
+        for dimensions in 1..6_u32 {
+            for count in [1, 2, FEW, FEW + 1, 700, 64 * FEW + 1, 5000] {
+                let mut rows = vec![0.0; count * dimensions as usize];
+                Independent::new(count as u64).fill(0, 0..dimensions, &mut rows);
+                // Half of the cases with many equal coordinates, some of them 0 and 1.
+                if count % 2 == 1 {
+                    rows.iter_mut().for_each(|x| *x = (*x * 4.0).round() / 4.0);
+                }
+                let points = Points::from_rows(&rows, dimensions as usize).unwrap();
+                let divided = sum(&points).value();
+                let paired = Tiles::new::<Star>(&points)
+                    .sum::<Star>(|_, pair| pair)
+                    .value();
+                let off = (divided / paired - 1.0).abs();
+                assert!(off < 1e-15, "{count} in {dimensions}: {divided} {paired}");
+            }
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! The kernels of the L2 discrepancies, in one dimension.
 
+use core::f64::consts::PI;
+
 /// A kernel `K(x, y)` on `[0, 1]^2`, of which two coordinates make the integrals below.
 pub(super) trait Kernel {
     /// The integral of the kernel over both coordinates, as a fraction.
@@ -156,5 +158,30 @@ impl Kernel for Extreme {
         let least = if x < y { x } else { y };
         let above = if above_x < above_y { above_x } else { above_y };
         least * above
+    }
+}
+
+pub(super) struct Diaphony;
+
+impl Kernel for Diaphony {
+    const MEAN: (f64, f64) = (1.0, 1.0);
+    const PROJECTIONS: bool = true;
+    const SCALE: f64 = 1.0;
+
+    fn single(_: f64) -> f64 {
+        1.0
+    }
+
+    fn features(x: f64) -> [f64; 2] {
+        [x, 0.0]
+    }
+
+    #[inline(always)]
+    fn pair([x, _]: [f64; 2], [y, _]: [f64; 2]) -> f64 {
+        // 1 + 2 pi^2 (t^2 - t + 1/6) = 1 - pi^2 / 6 + 2 pi^2 (t - 1/2)^2
+        const SQUARE: f64 = 2.0 * PI * PI;
+        const LEAST: f64 = 1.0 - PI * PI / 6.0;
+        let centred = (x - y).abs() - 0.5;
+        LEAST + SQUARE * (centred * centred)
     }
 }

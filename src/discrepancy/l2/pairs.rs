@@ -146,13 +146,11 @@ fn multiply<K: Kernel, const N: usize>(
     columns: &[[Column; 2]; N],
     factor: impl Fn(usize, f64) -> f64,
 ) {
-    for lane in 0..TILE {
-        let mut product = products[lane];
+    for (lane, product) in products.iter_mut().enumerate() {
         for k in 0..N {
             let there = [columns[k][0][lane], columns[k][1][lane]];
-            product *= factor(k, K::pair(point[k], there));
+            *product *= factor(k, K::pair(point[k], there));
         }
-        products[lane] = product;
     }
 }
 

@@ -22,6 +22,8 @@ pub(super) struct Found {
     pub(super) corner: Option<Vec<u32>>,
     /// No excess is above this one.
     pub(super) upper: f64,
+    /// Whether that is as close as it was asked to be: the steps sufficed.
+    pub(super) complete: bool,
     /// Steps taken.
     pub(super) work: u64,
 }
@@ -37,6 +39,7 @@ pub(super) fn search(grid: &Grid, lower: f64, gap: f64, limit: u64) -> Found {
         lower,
         corner: None,
         upper: lower,
+        complete: true,
         work: 0,
     };
     let mut frontier = Search::new(grid, lower, gap, u64::MAX);
@@ -68,6 +71,7 @@ pub(super) fn search(grid: &Grid, lower: f64, gap: f64, limit: u64) -> Found {
 impl Found {
     fn take(&mut self, search: &Search<'_>) {
         self.work += search.work;
+        self.complete &= search.complete;
         self.upper = self.upper.max(search.upper);
         if search.lower > self.lower {
             self.lower = search.lower;
@@ -136,6 +140,8 @@ struct Search<'a> {
     corner: Option<Vec<u32>>,
     /// The largest bound of a cell that was left aside.
     upper: f64,
+    /// Whether none was left aside for want of steps.
+    complete: bool,
     /// The undecided points of all cells between the first one and the present one.
     stack: Vec<Undecided>,
     separable: Separable,
@@ -161,6 +167,7 @@ impl<'a> Search<'a> {
             lower,
             corner: None,
             upper: f64::NEG_INFINITY,
+            complete: true,
             stack: Vec::new(),
             separable: Separable::default(),
             crossing: vec![0; grid.dimensions()],
@@ -272,8 +279,10 @@ impl<'a> Search<'a> {
         let undecided = self.stack.len() - first;
         self.work += (undecided + low.len()) as u64;
         let bound = self.bound(low, high, sure, undecided);
-        if !(bound > self.lower + self.gap) || self.work > self.limit {
+        let hopeless = bound <= self.lower + self.gap;
+        if hopeless || self.work > self.limit {
             self.upper = self.upper.max(bound);
+            self.complete &= hopeless;
             return None;
         }
         self.crossing.fill(0);

@@ -109,19 +109,28 @@ impl Star {
             Ok(state) => state,
             Err(exact) => return exact,
         };
-        // Ever closer bounds, as long as the budget lasts: the last try takes most of it.
-        let mut gap = state.lower();
-        while state.work < self.work {
-            let before = state.work;
-            if state.narrow(gap, self.work) && gap == 0.0 {
+        // Ever closer bounds, as long as the next ones may be had with what is left of the budget.
+        let mut gap = 0.5 * (1.0 - state.lower());
+        let mut before = 0;
+        loop {
+            let start = state.work;
+            if !state.narrow(gap, self.work) || gap == 0.0 {
                 break;
             }
-            let took = state.work - before;
-            gap = if took < self.work / 64 {
-                0.0
+            let took = state.work - start;
+            let left = self.work.saturating_sub(state.work);
+            let next = took.saturating_mul((took / before.max(1)).max(2));
+            if next < left {
+                gap *= 0.5;
+            } else if took < left / 2 {
+                gap *= 0.8;
             } else {
-                gap / 2.0
-            };
+                break;
+            }
+            if gap < state.lower() / 8.0 {
+                gap = 0.0;
+            }
+            before = took;
         }
         if state.upper >= 1.0 && state.lower() < 1.0 {
             // That much is known of any points.
@@ -254,7 +263,7 @@ impl<'a> State<'a> {
             self.work = budget;
             return false;
         }
-        let mut upper = f64::NEG_INFINITY;
+        let (mut upper, mut close) = (f64::NEG_INFINITY, true);
         for grid in 0..2 {
             let left = budget.saturating_sub(self.work);
             // Half of what is left for the first kind of boxes, all for the second.
@@ -263,16 +272,18 @@ impl<'a> State<'a> {
                 lower,
                 corner,
                 upper: above,
+                complete,
                 work,
             } = cells::search(&self.grids[grid], self.lower(), gap, limit);
             self.work += work;
             upper = upper.max(above);
+            close &= complete;
             if let Some(corner) = corner {
                 self.offer(lower, corner, grid);
             }
         }
         self.upper = self.upper.min(upper).min(1.0).max(self.lower());
-        self.upper - self.lower() <= gap
+        close
     }
 
     fn conclude(self) -> StarDiscrepancy {

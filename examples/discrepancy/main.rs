@@ -1,0 +1,276 @@
+//! Measures the discrepancy of a point set or of a file of points, or draws it against the count of points.
+
+#[path = "../common/marks.rs"]
+mod marks;
+mod measure;
+#[path = "../common/sets.rs"]
+mod sets;
+mod sweep;
+
+use std::error::Error;
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use clap::Parser;
+use estimand::discrepancy::Points;
+use indicatif::ProgressBar;
+use serde_json::{Value, json};
+
+use measure::{Kind, Measure, Metric};
+
+/// Measures the discrepancy of a point set or of a file of points.
+///
+/// With `--sweep` it measures several sets at many counts, and draws the curves.
+#[derive(Parser)]
+struct Arguments {
+    /// The set
+    #[arg(value_enum, required_unless_present_any = ["file", "sweep"])]
+    set: Option<sets::Set>,
+    /// A file of points instead: comma-separated values, one point a line; `-` for the standard input
+    #[arg(long, value_name = "POINTS.csv", conflicts_with_all = ["set", "sweep"])]
+    file: Option<PathBuf>,
+    /// In how many dimensions [default: 2, or all of a file]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    dims: Option<u32>,
+    /// How many points [default: 64, or all of a file]
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    count: Option<u64>,
+    /// The index of the first point
+    #[arg(long, default_value_t = 0)]
+    first: u64,
+    #[command(flatten)]
+    choice: sets::Choice,
+    /// What is measured
+    #[arg(long, value_enum, default_value_t = Metric::Star)]
+    metric: Metric,
+    /// The square of an L2 discrepancy, not the root
+    #[arg(long)]
+    squared: bool,
+    /// Weights of the dimensions in an L2 discrepancy
+    #[arg(long, value_delimiter = ',', value_name = "WEIGHTS")]
+    weights: Option<Vec<f64>>,
+    /// The base of a net
+    #[arg(long, default_value_t = 2)]
+    base: u32,
+    /// The kind of answer that the star discrepancy must have [default: the best that the budget allows]
+    #[arg(long, value_enum)]
+    kind: Option<Kind>,
+    /// How far bounds may be apart
+    #[arg(long, default_value_t = 0.01)]
+    gap: f64,
+    /// Seconds that the star discrepancy may take, about; counted in steps, so that the answer is the same everywhere
+    #[arg(long, default_value_t = 10.0, value_name = "SECONDS")]
+    budget: f64,
+    /// Writes the answer as JSON; `-` for the standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Draws the discrepancy of several sets against the count, as PNG and SVG
+    #[arg(long)]
+    sweep: bool,
+    /// The sets of the sweep
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "SETS", requires = "sweep",
+          default_values_t = sweep::SETS)]
+    sets: Vec<sets::Set>,
+    /// The counts of the sweep
+    #[arg(long, value_delimiter = ',', value_name = "COUNTS", requires = "sweep",
+          default_values_t = sweep::COUNTS)]
+    counts: Vec<u64>,
+    /// How many seeds random sets are averaged over
+    #[arg(long, default_value_t = 16, requires = "sweep",
+          value_parser = clap::value_parser!(u64).range(1..))]
+    replicates: u64,
+    /// Where the pictures of the sweep go
+    #[arg(long, value_name = "DIR", default_value = "out", requires = "sweep")]
+    out: PathBuf,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        // A reader that has seen enough is no failure.
+        Err(error) if is_broken_pipe(&*error) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn is_broken_pipe(error: &(dyn Error + 'static)) -> bool {
+    error
+        .downcast_ref::<std::io::Error>()
+        .is_some_and(|error| error.kind() == ErrorKind::BrokenPipe)
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    if !(arguments.budget >= 0.0) {
+        return Err(format!("--budget must be at least 0; it was {}", arguments.budget).into());
+    }
+    let measure = Measure {
+        metric: arguments.metric,
+        kind: arguments.kind,
+        gap: arguments.gap,
+        budget: arguments.budget,
+        squared: arguments.squared,
+        weights: arguments.weights.clone(),
+        base: arguments.base,
+        seed: arguments.choice.seed,
+    };
+    if arguments.sweep {
+        let sweep = sweep::Sweep {
+            measure,
+            sets: &arguments.sets,
+            counts: &arguments.counts,
+            replicates: arguments.replicates,
+            dimensions: arguments.dims.unwrap_or(2),
+            first: arguments.first,
+            choice: arguments.choice,
+        };
+        let curves = sweep.run()?;
+        std::fs::create_dir_all(&arguments.out)
+            .map_err(|error| format!("{}: {error}", arguments.out.display()))?;
+        let files = sweep.draw(&curves, &arguments.out)?;
+        return match &arguments.json {
+            Some(path) => write_json(path, &sweep.json(&curves)),
+            None => {
+                let mut out = std::io::stdout().lock();
+                write!(out, "{}", sweep.table(&curves))?;
+                for file in files {
+                    writeln!(out, "{}", file.display())?;
+                }
+                Ok(())
+            }
+        };
+    }
+    let points = points(arguments)?;
+    let spinner = std::io::stderr().is_terminal().then(|| {
+        let spinner = ProgressBar::new_spinner().with_message("measuring");
+        spinner.enable_steady_tick(Duration::from_millis(100));
+        spinner
+    });
+    let start = Instant::now();
+    let answer = measure.of(&points);
+    let seconds = start.elapsed().as_secs_f64();
+    if let Some(spinner) = spinner {
+        spinner.finish_and_clear();
+    }
+    let answer = answer?;
+    match &arguments.json {
+        Some(path) => {
+            let mut object = serde_json::Map::new();
+            object.insert("metric".into(), json!(arguments.metric.name()));
+            object.extend(answer.json());
+            object.insert("count".into(), json!(points.count()));
+            object.insert("dimensions".into(), json!(points.dimensions()));
+            object.insert("seconds".into(), json!(seconds));
+            write_json(path, &Value::Object(object))
+        }
+        None => {
+            let mut out = std::io::stdout().lock();
+            let squared = if arguments.squared { ", squared" } else { "" };
+            writeln!(
+                out,
+                "{}{squared}, of {} points in {} dimensions, {}: {} ({seconds:.3} s)",
+                arguments.metric.name(),
+                points.count(),
+                points.dimensions(),
+                answer.kind(),
+                answer.text()
+            )?;
+            Ok(())
+        }
+    }
+}
+
+fn write_json(path: &Path, value: &Value) -> Result<(), Box<dyn Error>> {
+    let text = format!("{value:#}\n");
+    if path == Path::new("-") {
+        std::io::stdout().lock().write_all(text.as_bytes())?;
+        Ok(())
+    } else {
+        std::fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()).into())
+    }
+}
+
+/// The points that the arguments name.
+fn points(arguments: &Arguments) -> Result<Points<'static>, Box<dyn Error>> {
+    if let Some(path) = &arguments.file {
+        return read(path, arguments.dims, arguments.count);
+    }
+    let set = arguments.set.ok_or("which set?")?;
+    let dimensions = arguments.dims.unwrap_or(2);
+    let count = arguments.count.unwrap_or(64);
+    let points = arguments.choice.build(set, dimensions, count)?;
+    let count = points.size().unwrap_or(count);
+    if arguments.count.is_some_and(|asked| asked != count) {
+        eprintln!("note: this set has {count} points");
+    }
+    let end = arguments
+        .first
+        .checked_add(count)
+        .ok_or("the indices pass the last one")?;
+    Ok(Points::from_set(
+        &*points,
+        arguments.first..end,
+        dimensions,
+    )?)
+}
+
+/// Reads points: numbers between commas or blanks. Lines that are blank, begin with `#`, or are a heading before the first
+/// number, are passed over.
+fn read(
+    path: &Path,
+    dimensions: Option<u32>,
+    count: Option<u64>,
+) -> Result<Points<'static>, Box<dyn Error>> {
+    let text = if path == Path::new("-") {
+        std::io::read_to_string(std::io::stdin())
+    } else {
+        std::fs::read_to_string(path)
+    }
+    .map_err(|error| format!("{}: {error}", path.display()))?;
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let row: Result<Vec<f64>, _> = line
+            .split(|c: char| c == ',' || c == ';' || c.is_whitespace())
+            .filter(|field| !field.is_empty())
+            .map(|field| {
+                field
+                    .parse()
+                    .map_err(|_| format!("{}:{number}: no number: {field:?}", path.display()))
+            })
+            .collect();
+        match row {
+            Ok(mut row) => {
+                if let Some(dimensions) = dimensions {
+                    let dimensions = dimensions as usize;
+                    if row.len() < dimensions {
+                        return Err(format!(
+                            "{}:{number}: {} coordinates, not {dimensions}",
+                            path.display(),
+                            row.len()
+                        )
+                        .into());
+                    }
+                    row.truncate(dimensions);
+                }
+                rows.push(row);
+            }
+            Err(_) if rows.is_empty() && number == 1 => {}
+            Err(error) => return Err(error.into()),
+        }
+        if count.is_some_and(|count| rows.len() as u64 == count) {
+            break;
+        }
+    }
+    if let Some(count) = count.filter(|&count| count > rows.len() as u64) {
+        return Err(format!("{}: {} points, not {count}", path.display(), rows.len()).into());
+    }
+    Ok(Points::from_slices(&rows)?)
+}

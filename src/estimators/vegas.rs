@@ -1,0 +1,368 @@
+//! Adaptive importance sampling and adaptive stratification.
+
+use std::time::Instant;
+
+use crate::evaluate::Wide;
+use crate::integrands::ImportanceMap;
+use crate::stratum::Stratified;
+use crate::warning::Warning;
+use crate::{
+    Error, ErrorBar, Estimate, Estimator, Incomplete, Integrand, Outcome, Progressive, Stop, Value,
+    hash,
+};
+
+mod adaptation;
+
+use adaptation::Adaptation;
+
+/// Adaptive integration of peaked and badly scaled integrands: an [`ImportanceMap`] that learns from iteration to
+/// iteration, and a grid of strata whose numbers of points follow their variances.[^lepage]
+///
+/// The first half of the iterations only trains and is then forgotten. The others go on learning; each is unbiased whatever was
+/// learned before it, and their mean is weighted by their numbers of points, not by their claimed errors, which would
+/// bias it.
+///
+/// A peak that no point of the first iterations hits is not there for it: the estimate then comes with
+/// [`Warning::NoSpread`] or [`Warning::FewValues`]. Peaks along diagonals gain little. For smooth
+/// integrands a trained map under scrambled nets ([`Mapped`](crate::integrands::Mapped)) is better by far.
+///
+/// All values zero: the map stays as it is, and the estimate is zero. One iteration: it is not trained, and
+/// there is no chi-square.
+///
+/// ```
+/// use estimand::{Estimator, cube, estimators::Vegas};
+///
+/// let peak = cube(|[x, y]: [f64; 2]| (-1e4 * ((x - 0.5).powi(2) + (y - 0.2).powi(2))).exp());
+/// let estimate = Vegas::new(2, 100_000, 1)?.estimate(&peak)?;
+/// let truth = std::f64::consts::PI / 1e4;
+/// assert!(estimate.interval(0.9999).unwrap().contains(truth));
+/// assert!(estimate.std_error.unwrap() < 1e-3 * truth);
+/// # Ok::<(), estimand::Error>(())
+/// ```
+///
+/// [^lepage]: Lepage, Peter (2021). *Adaptive Multidimensional Integration: VEGAS Enhanced*.
+///     <https://doi.org/10.1016/j.jcp.2021.110386>
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct Vegas {
+    count: u64,
+    iterations: u32,
+    seed: u64,
+    damping: f64,
+    map: ImportanceMap,
+    trained: bool,
+}
+
+/// What one iteration of a [`Vegas`] gave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Iteration<V> {
+    /// The estimate of the iteration alone.
+    pub mean: V,
+    /// Its standard error.
+    pub std_error: V,
+    /// Degrees of freedom of the standard error.
+    pub freedom: f64,
+    /// The largest share of one value in the variance.
+    pub share: f64,
+    /// How many evaluations it made.
+    pub used: u64,
+    /// Whether it only trained, and is not part of the estimate.
+    pub training: bool,
+}
+
+/// The state of a [`Vegas`] between two iterations; see [`Progressive`].
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct VegasState<V> {
+    adaptation: Adaptation<V>,
+    iterations: Vec<Iteration<V>>,
+}
+
+/// All that a [`Vegas`] found out.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Adapted<V> {
+    /// The estimate, from the iterations that did not only train.
+    pub estimate: Estimate<V>,
+    /// The iterations, in their order.
+    pub iterations: Vec<Iteration<V>>,
+    /// How much the iterations of the estimate differ, as chi-square per degree of freedom: the largest of the
+    /// components, near 1 if their errors can be trusted. `None` for fewer than two of them.
+    pub chi_square: Option<f64>,
+    /// The map as the last iteration left it.
+    pub map: ImportanceMap,
+}
+
+impl Vegas {
+    /// About `count` evaluations in ten iterations, adapting to the first `dimensions` coordinates; further coordinates are
+    /// independent. `seed` selects the points.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for no dimensions, and for fewer than 40 evaluations.
+    pub fn new(dimensions: u32, count: u64, seed: u64) -> Result<Self, Error> {
+        /// Points a bin and iteration, about.
+        const FILL: u64 = 20;
+        if dimensions == 0 {
+            let domain = "at least 1";
+            return Err(Error::refused("number of dimensions", domain, dimensions));
+        }
+        if count < 40 {
+            return Err(Error::refused("count", "at least 40", count));
+        }
+        let bins = usize::try_from(count / 10 / FILL).unwrap_or(usize::MAX);
+        Ok(Self {
+            count,
+            iterations: 10,
+            seed,
+            damping: 0.5,
+            map: ImportanceMap::identity(dimensions, bins.clamp(1, 1000))?,
+            trained: false,
+        })
+    }
+
+    /// The same in another number of iterations.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for no iterations, and for fewer than four evaluations an iteration.
+    pub fn iterations(mut self, iterations: u32) -> Result<Self, Error> {
+        if iterations == 0 || self.count / u64::from(iterations) < 4 {
+            let domain = "at least 1, with four evaluations each";
+            return Err(Error::refused("number of iterations", domain, iterations));
+        }
+        self.iterations = iterations;
+        Ok(self)
+    }
+
+    /// The same beginning with a map that was trained before: no iteration only trains, all make the estimate.
+    pub fn map(mut self, map: ImportanceMap) -> Self {
+        self.map = map;
+        self.trained = true;
+        self
+    }
+
+    /// The same with another exponent of damping in `[0, 2]`: 0 learns nothing, the default is 0.5.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for an exponent outside `[0, 2]`.
+    pub fn damping(mut self, exponent: f64) -> Result<Self, Error> {
+        if !(0.0..=2.0).contains(&exponent) {
+            return Err(Error::refused("damping", "in [0, 2]", exponent));
+        }
+        self.damping = exponent;
+        Ok(self)
+    }
+
+    /// The map that all evaluations together train.
+    ///
+    /// # Errors
+    ///
+    /// As [`Estimator::estimate`].
+    pub fn train<I: Integrand>(&self, integrand: &I) -> Result<ImportanceMap, Error> {
+        Ok(self.run(integrand)?.map)
+    }
+
+    /// The estimate with all that was found out on the way.
+    ///
+    /// # Errors
+    ///
+    /// As [`Estimator::estimate`].
+    pub fn run<I: Integrand>(
+        &self,
+        integrand: &I,
+    ) -> Result<Adapted<Wide<I>>, Incomplete<Wide<I>>> {
+        let clock = Instant::now();
+        let mut state = self.start()?;
+        let outcome = self.grow(&mut state, integrand, u64::MAX);
+        let (estimate, chi_square) = self.estimate_of(&state).unzip();
+        let estimate = estimate.map(|estimate| Estimate {
+            seconds: clock.elapsed().as_secs_f64(),
+            ..estimate
+        });
+        if let Err(reason) = outcome {
+            return Err(Incomplete {
+                reason,
+                so_far: estimate.map(Box::new),
+            });
+        }
+        Ok(Adapted {
+            estimate: estimate.ok_or(Error::NothingLeft { rejected: 0 })?,
+            iterations: state.iterations,
+            chi_square: chi_square.flatten(),
+            map: state.adaptation.map,
+        })
+    }
+
+    /// How many of the iterations only train.
+    fn training(&self) -> usize {
+        if self.trained {
+            0
+        } else {
+            self.iterations as usize / 2
+        }
+    }
+
+    /// Evaluations in each iteration.
+    fn each(&self) -> u64 {
+        self.count / u64::from(self.iterations)
+    }
+
+    /// The estimate from the iterations that did not only train, and their chi-square.
+    fn estimate_of<V: Value>(&self, state: &VegasState<V>) -> Option<(Estimate<V>, Option<f64>)> {
+        let main: Vec<_> = state
+            .iterations
+            .iter()
+            .filter(|one| !one.training)
+            .collect();
+        let number = main.len();
+        if number == 0 {
+            return None;
+        }
+        // All iterations have nearly the same number of points.
+        let share = 1.0 / number as f64;
+        let mean = main.iter().fold(V::ZERO, |sum, one| {
+            sum.zip(one.mean, |sum, mean| sum + share * mean)
+        });
+        let std_error = main.iter().fold(V::ZERO, |sum, one| {
+            sum.zip(one.std_error, |sum, error| sum.hypot(share * error))
+        });
+        // Each iteration's part in the variance, the largest of the components.
+        let (mut below, mut largest_share) = (0.0, 0.0_f64);
+        for one in &main {
+            let mut part = 0.0_f64;
+            let _ = one.std_error.zip(std_error, |own, error| {
+                if error > 0.0 {
+                    part = part.max((share * own / error).powi(2));
+                }
+                own
+            });
+            below += part * part / one.freedom;
+            largest_share = largest_share.max(part * one.share);
+        }
+        let together = Stratified {
+            mean,
+            std_error,
+            freedom: if below > 0.0 {
+                (1.0 / below).min(1e9)
+            } else {
+                1e9
+            },
+            share: largest_share,
+        };
+        let chi_square = (number > 1).then(|| {
+            let sum = main.iter().fold(V::ZERO, |sum, one| {
+                one.mean
+                    .zip(mean, |x, mean| x - mean)
+                    .zip(one.std_error, |off, error| match error {
+                        0.0 => 0.0,
+                        error => (off / error).powi(2),
+                    })
+                    .zip(sum, |part, sum| sum + part)
+            });
+            let mut largest = 0.0_f64;
+            sum.for_each(|sum| largest = largest.max(sum));
+            largest / (number - 1) as f64
+        });
+        let mut warnings = together.warnings();
+        if let Some(chi_square) = chi_square {
+            // Five standard deviations of chi-square per degree of freedom.
+            let limit = 1.0 + 5.0 * (2.0 / (number - 1) as f64).sqrt();
+            if chi_square > limit {
+                warnings.push(Warning::Inconsistent { chi_square });
+            }
+        }
+        let estimate = Estimate {
+            std_error: Some(std_error),
+            error_bar: ErrorBar::Strata {
+                freedom: together.freedom,
+            },
+            replicates: main.iter().map(|one| one.mean).collect(),
+            requested: self.count,
+            stop: if state.iterations.len() < self.iterations as usize {
+                Stop::Unfinished
+            } else {
+                Stop::Count
+            },
+            warnings,
+            ..Estimate::new(mean, self.used(state))
+        };
+        Some((estimate, chi_square))
+    }
+}
+
+impl Progressive for Vegas {
+    type State<V: Value> = VegasState<V>;
+
+    fn budget(&self) -> u64 {
+        self.count
+    }
+
+    fn start<V: Value>(&self) -> Result<VegasState<V>, Error> {
+        Ok(VegasState {
+            adaptation: Adaptation::new(self.map.clone(), self.each()),
+            iterations: Vec::new(),
+        })
+    }
+
+    fn used<V: Value>(&self, state: &VegasState<V>) -> u64 {
+        state.iterations.iter().map(|one| one.used).sum()
+    }
+
+    /// Goes on by whole iterations.
+    fn grow<I: Integrand>(
+        &self,
+        state: &mut VegasState<Wide<I>>,
+        integrand: &I,
+        evaluations: u64,
+    ) -> Result<(), Error> {
+        let VegasState {
+            adaptation,
+            iterations,
+        } = state;
+        if adaptation.map.dimensions() != self.map.dimensions() {
+            let domain = "one of this estimator, with as many dimensions";
+            let value = adaptation.map.dimensions();
+            return Err(Error::refused("state", domain, value));
+        }
+        let mut used: u64 = iterations.iter().map(|one| one.used).sum();
+        while used < evaluations && iterations.len() < self.iterations as usize {
+            let seed = hash::hash(self.seed, iterations.len() as u64);
+            let pass = adaptation.pass(integrand, seed)?;
+            let Some(alone) = Stratified::new(&pass.strata) else {
+                return Err(Error::NothingLeft { rejected: 0 });
+            };
+            let points = adaptation.points();
+            used += points;
+            iterations.push(Iteration {
+                mean: alone.mean,
+                std_error: alone.std_error,
+                freedom: alone.freedom,
+                share: alone.share,
+                used: points,
+                training: iterations.len() < self.training(),
+            });
+            adaptation.learn(&pass, self.damping, self.each());
+        }
+        Ok(())
+    }
+
+    fn conclude<V: Value>(&self, state: &VegasState<V>) -> Option<Estimate<V>> {
+        Some(self.estimate_of(state)?.0)
+    }
+
+    /// The end of the next iteration.
+    fn next_look(&self, evaluations: u64) -> u64 {
+        evaluations.saturating_add(self.each())
+    }
+}
+
+impl Estimator for Vegas {
+    fn estimate<I: Integrand>(&self, integrand: &I) -> Outcome<I::Value> {
+        Ok(self.run(integrand)?.estimate)
+    }
+}

@@ -1,0 +1,257 @@
+//! A map that sends points where the integrand is large, axis by axis.
+
+use crate::{Error, Integrand, Sampler, Value};
+
+/// A map of the unit cube onto itself that sends more points where an integrand is large: VEGAS' importance map.[^lepage]
+///
+/// Each axis is cut into bins of unequal width that all get the same share of the points. It is learned by a
+/// [`Vegas`](crate::estimators::Vegas) and can then be used with any points and any estimator, by way of [`Mapped`];
+/// with the feature `serde` it can be saved.
+///
+/// It knows nothing of how the axes belong together: peaks along a diagonal stay hidden from it.
+///
+/// ```
+/// use estimand::estimators::Vegas;
+/// use estimand::integrands::Mapped;
+/// use estimand::points::{Owen, Sobol};
+/// use estimand::{Estimator, Replicated, cube};
+///
+/// let peak = cube(|x: [f64; 4]| {
+///     let square: f64 = x.iter().map(|x| ((x - 0.3) / 0.01).powi(2)).sum();
+///     (-0.5 * square).exp()
+/// });
+/// let truth = (2.0 * std::f64::consts::PI).powi(2) * 1e-8;
+///
+/// let map = Vegas::new(4, 50_000, 1)?.train(&peak)?;
+/// let sobol = Sobol::new(4)?;
+/// let estimate = Replicated::new(8, 1 << 12, |seed| sobol.clone().scrambled(Owen { seed }))
+///     .estimate(&Mapped::new(&peak, &map))?;
+/// assert!((estimate.mean / truth - 1.0).abs() < 1e-3);
+/// # Ok::<(), estimand::Error>(())
+/// ```
+///
+/// [^lepage]: Lepage, Peter (2021). *Adaptive Multidimensional Integration: VEGAS Enhanced*.
+///     <https://doi.org/10.1016/j.jcp.2021.110386>
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ImportanceMap {
+    /// The ends of the bins of each axis, rising from 0 to 1.
+    axes: Vec<Vec<f64>>,
+}
+
+/// The image of one coordinate.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Image {
+    pub(crate) x: f64,
+    pub(crate) jacobian: f64,
+    pub(crate) bin: usize,
+}
+
+impl ImportanceMap {
+    /// The map that changes nothing, of `dimensions` axes with `bins` bins each. Further coordinates are not mapped.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for no bins.
+    pub fn identity(dimensions: u32, bins: usize) -> Result<Self, Error> {
+        if bins == 0 {
+            return Err(Error::refused("number of bins", "at least 1", bins));
+        }
+        let axis: Vec<f64> = (0..=bins).map(|end| end as f64 / bins as f64).collect();
+        Ok(Self {
+            axes: vec![axis; dimensions as usize],
+        })
+    }
+
+    /// The ends of the bins of the axis `dimension`, rising from 0 to 1; `None` past the last axis.
+    pub fn axis(&self, dimension: usize) -> Option<&[f64]> {
+        self.axes.get(dimension).map(Vec::as_slice)
+    }
+
+    /// How many axes are mapped.
+    pub fn dimensions(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// How many bins each axis has.
+    pub fn bins(&self) -> usize {
+        self.axes.first().map_or(1, |axis| axis.len() - 1)
+    }
+
+    /// Where the coordinate `u` of an axis goes; `None` past the last axis.
+    #[inline]
+    pub(crate) fn image(&self, dimension: usize, u: f64) -> Option<Image> {
+        const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
+        let axis = self.axes.get(dimension)?;
+        let bins = axis.len() - 1;
+        let scaled = u * bins as f64;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "below the number of bins"
+        )]
+        let bin = (scaled as usize).min(bins - 1);
+        let width = axis[bin + 1] - axis[bin];
+        Some(Image {
+            x: (axis[bin] + (scaled - bin as f64) * width).min(ALMOST_ONE),
+            jacobian: width * bins as f64,
+            bin,
+        })
+    }
+
+    /// Moves the ends of the bins so that each holds the same part of `weights`, the mean square of the integrand in each bin,
+    /// `damping` slowing it down from 1 to 0. Weights that are all zero or not finite change nothing.
+    pub(crate) fn refine(&mut self, weights: &[Vec<f64>], damping: f64) {
+        for (axis, weights) in self.axes.iter_mut().zip(weights) {
+            let sum: f64 = weights.iter().sum();
+            if weights.len() < 2 || !(sum > 0.0 && sum.is_finite()) {
+                continue;
+            }
+            let last = weights.len() - 1;
+            let smooth: Vec<f64> = (0..=last)
+                .map(|bin| {
+                    let left = weights[bin.saturating_sub(1)];
+                    let right = weights[(bin + 1).min(last)];
+                    (left + 6.0 * weights[bin] + right) / (8.0 * sum)
+                })
+                .collect();
+            let damped: Vec<f64> = smooth
+                .iter()
+                .map(|&d| match d {
+                    d if d <= 0.0 => 0.0,
+                    d if d >= 1.0 => 1.0,
+                    d => ((1.0 - d) / -d.ln()).powf(damping),
+                })
+                .collect();
+            let total: f64 = damped.iter().sum();
+            let share = total / damped.len() as f64;
+            let old = axis.clone();
+            let (mut bin, mut before) = (0, 0.0);
+            for (place, end) in axis.iter_mut().enumerate().take(last + 1).skip(1) {
+                let target = share * place as f64;
+                while bin < last && before + damped[bin] < target {
+                    before += damped[bin];
+                    bin += 1;
+                }
+                let within = if damped[bin] > 0.0 {
+                    ((target - before) / damped[bin]).clamp(0.0, 1.0)
+                } else {
+                    1.0
+                };
+                *end = old[bin] + within * (old[bin + 1] - old[bin]);
+            }
+        }
+    }
+}
+
+/// An integrand at the images of the points under an [`ImportanceMap`], weighted so that its integral stays the same.
+#[derive(Clone, Copy, Debug)]
+#[must_use]
+pub struct Mapped<'a, I> {
+    integrand: I,
+    map: &'a ImportanceMap,
+}
+
+impl<'a, I: Integrand> Mapped<'a, I> {
+    /// `integrand` under `map`.
+    pub const fn new(integrand: I, map: &'a ImportanceMap) -> Self {
+        Self { integrand, map }
+    }
+}
+
+impl<I: Integrand> Integrand for Mapped<'_, I> {
+    type Value = I::Value;
+
+    #[inline]
+    fn evaluate<S: Sampler>(&self, u: &mut S) -> I::Value {
+        let mut u = Images {
+            inner: u,
+            map: self.map,
+            dimension: 0,
+            jacobian: 1.0,
+        };
+        let value = self.integrand.evaluate(&mut u);
+        let jacobian = u.jacobian;
+        value.map(|value| value * jacobian)
+    }
+
+    fn dimensions(&self) -> u32 {
+        self.integrand.dimensions()
+    }
+}
+
+/// The images of coordinates.
+struct Images<'a, S> {
+    inner: &'a mut S,
+    map: &'a ImportanceMap,
+    dimension: usize,
+    jacobian: f64,
+}
+
+impl<S: Sampler> Sampler for Images<'_, S> {
+    #[inline]
+    fn next_1d(&mut self) -> f64 {
+        let u = self.inner.next_1d();
+        let dimension = self.dimension;
+        self.dimension += 1;
+        match self.map.image(dimension, u) {
+            Some(image) => {
+                self.jacobian *= image.jacobian;
+                image.x
+            }
+            None => u,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_map_learns_a_density_of_one_axis() {
+        // Weights proportional to the square of the density 2 x: without damping's compression the ends tend to the
+        // square roots of equal steps.
+        let mut map = ImportanceMap::identity(1, 64).unwrap();
+        for _ in 0..60 {
+            let axis = map.axis(0).unwrap().to_vec();
+            let weights = axis
+                .windows(2)
+                .map(|ends| ((ends[0] + ends[1]) * (ends[1] - ends[0])).powi(2))
+                .collect();
+            map.refine(&[weights], 0.7);
+        }
+        for (place, end) in map.axis(0).unwrap().iter().enumerate() {
+            let expected = (place as f64 / 64.0).sqrt();
+            assert!((end - expected).abs() < 0.02, "{end} at {place}");
+        }
+    }
+
+    #[test]
+    fn nothing_learned_is_nothing_changed() {
+        let identity = ImportanceMap::identity(2, 8).unwrap();
+        for weights in [0.0, f64::NAN, f64::INFINITY] {
+            let mut map = identity.clone();
+            map.refine(&vec![vec![weights; 8]; 2], 0.5);
+            assert_eq!(map, identity);
+        }
+        let mut single = ImportanceMap::identity(2, 1).unwrap();
+        single.refine(&vec![vec![3.0]; 2], 0.5);
+        assert_eq!(single, ImportanceMap::identity(2, 1).unwrap());
+    }
+
+    #[test]
+    fn bins_stay_in_order_when_all_weight_is_in_one() {
+        let mut map = ImportanceMap::identity(1, 8).unwrap();
+        for hot in [0, 3, 7] {
+            for _ in 0..200 {
+                let mut weights = vec![0.0; 8];
+                weights[hot] = 1e300;
+                map.refine(&[weights], 1.5);
+                let axis = map.axis(0).unwrap();
+                assert!(axis.windows(2).all(|ends| ends[0] <= ends[1]), "{axis:?}");
+                assert_eq!((axis[0], axis[8]), (0.0, 1.0));
+            }
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! What strata of equal weight say together: mean, error, and how far the error can be trusted.
+
+use crate::tally::Tally;
+use crate::warning::Warning;
+use crate::{Moments, Value};
+
+/// What the points of a stratum have given.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stratum<V> {
+    pub(crate) moments: Moments<V>,
+    pub(crate) low: V,
+    pub(crate) high: V,
+}
+
+impl<V: Value> Stratum<V> {
+    pub(crate) const EMPTY: Self = Self {
+        moments: Moments::new(),
+        low: V::ZERO,
+        high: V::ZERO,
+    };
+
+    /// What a closed tally has given.
+    pub(crate) fn of(tally: &Tally<V>) -> Self {
+        Self {
+            moments: *tally.moments(),
+            low: tally
+                .lowest()
+                .first()
+                .map_or(V::ZERO, |low| -> V { low.map(|low| -low) }),
+            high: tally.highest().first().copied().unwrap_or(V::ZERO),
+        }
+    }
+
+    pub(crate) fn merge(&mut self, other: &Self) {
+        if self.moments.count() == 0 {
+            *self = *other;
+        } else if other.moments.count() > 0 {
+            self.moments.merge(other.moments);
+            self.low = self.low.zip(other.low, f64::min);
+            self.high = self.high.zip(other.high, f64::max);
+        }
+    }
+}
+
+/// What strata of equal weight say together.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stratified<V> {
+    pub(crate) mean: V,
+    pub(crate) std_error: V,
+    /// Degrees of freedom of the error, the least of all components.[^welch]
+    ///
+    /// [^welch]: Satterthwaite, Franklin (1946). *An Approximate Distribution of Estimates of Variance
+    ///     Components*. <https://doi.org/10.2307/3002019>
+    pub(crate) freedom: f64,
+    /// The largest share of one value in the variance of the mean.
+    pub(crate) share: f64,
+}
+
+impl<V: Value> Stratified<V> {
+    /// `None` if a stratum has fewer than two values, or if there is none.
+    pub(crate) fn new(strata: &[Stratum<V>]) -> Option<Self> {
+        if strata.is_empty() {
+            return None;
+        }
+        let weight = 1.0 / strata.len() as f64;
+        let errors: Vec<V> = strata
+            .iter()
+            .map(|stratum| Some(stratum.moments.std_error()?.map(|error| error * weight)))
+            .collect::<Option<_>>()?;
+        let mean = strata.iter().fold(V::ZERO, |sum, stratum| {
+            sum.zip(stratum.moments.mean(), |sum, mean| sum + weight * mean)
+        });
+        let largest = errors
+            .iter()
+            .fold(V::ZERO, |largest, error| largest.zip(*error, f64::max));
+        let (mut squares, mut fourths, mut peak) = (V::ZERO, V::ZERO, V::ZERO);
+        for (stratum, &error) in strata.iter().zip(&errors) {
+            let moments = stratum.moments;
+            let less = moments.count() as f64 - 1.0;
+            // Squares relative to the largest: no overflow and no underflow.
+            let part = error.zip(largest, |error, largest| match largest {
+                0.0 => 0.0,
+                largest => (error / largest).powi(2),
+            });
+            squares = squares.zip(part, |sum, part| sum + part);
+            fourths = fourths.zip(part, |sum, part| sum + part * part / less);
+            let share = stratum
+                .high
+                .zip(moments.mean(), |high, mean| high - mean)
+                .zip(
+                    moments.mean().zip(stratum.low, |mean, low| mean - low),
+                    f64::max,
+                )
+                .zip(moments.root(), |deviation, root| match root {
+                    0.0 => 0.0,
+                    root => (deviation / root).powi(2),
+                });
+            peak = peak.zip(part.zip(share, |part, share| part * share), f64::max);
+        }
+        let std_error = squares.zip(largest, |squares, largest| largest * squares.sqrt());
+        // No more than can be told from infinitely many.
+        let (mut freedom, mut share) = (1e9_f64, 0.0_f64);
+        let _ = squares.zip(fourths, |squares, fourths| {
+            if fourths > 0.0 {
+                freedom = freedom.min(squares * squares / fourths);
+            }
+            0.0
+        });
+        let _ = peak.zip(squares, |peak, squares| {
+            if squares > 0.0 {
+                share = share.max(peak / squares);
+            }
+            0.0
+        });
+        Some(Self {
+            mean,
+            std_error,
+            freedom,
+            share,
+        })
+    }
+
+    /// What the values themselves say against the error.
+    pub(crate) fn warnings(&self) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        let mut alike = false;
+        self.std_error.for_each(|error| alike |= error == 0.0);
+        if alike {
+            warnings.push(Warning::NoSpread);
+        }
+        if self.share > 0.05 {
+            let share = self.share.min(1.0);
+            warnings.push(Warning::FewValues { share });
+        }
+        warnings
+    }
+}

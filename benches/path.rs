@@ -70,5 +70,9 @@ fn sets_in_the_cornell_box(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(path, scenes_with_independent_points, sets_in_the_cornell_box);
+criterion_group!(
+    path,
+    scenes_with_independent_points,
+    sets_in_the_cornell_box
+);
 criterion_main!(path);

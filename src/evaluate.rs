@@ -42,7 +42,9 @@ impl<P: PointSet> Source for P {
             }
             return;
         }
-        let rows = (AHEAD / width).min(usize::try_from(end - index).unwrap_or(AHEAD));
+        // A power of two: nets fill such blocks fastest.
+        let most = 1 << (AHEAD / width).ilog2();
+        let rows = usize::try_from(end - index).map_or(most, |left| left.min(most));
         let mut ahead = vec![0.0; rows * width];
         while index < end {
             let rows = rows.min(usize::try_from(end - index).unwrap_or(rows));

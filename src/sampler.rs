@@ -56,8 +56,10 @@ impl<S: Sampler + ?Sized> Sampler for &mut S {
 pub struct Cursor<'a, P: ?Sized> {
     points: &'a P,
     index: u64,
+    /// What is left of the coordinates at hand.
+    ahead: core::slice::Iter<'a, f64>,
+    /// The dimension of the first coordinate past them.
     dimension: u32,
-    prefix: &'a [f64],
 }
 
 impl<'a, P: PointSet + ?Sized> Cursor<'a, P> {
@@ -75,27 +77,35 @@ impl<'a, P: PointSet + ?Sized> Cursor<'a, P> {
         Self {
             points,
             index,
-            dimension: 0,
-            prefix,
+            ahead: prefix.iter(),
+            dimension: u32::try_from(prefix.len()).unwrap_or(u32::MAX),
         }
     }
 
     /// The dimension that the next coordinate will be read from, which is the number read so far.
     pub fn dimension(&self) -> u32 {
-        self.dimension
+        // As many as were counted in at the beginning.
+        let left = u32::try_from(self.ahead.len()).unwrap_or(u32::MAX);
+        self.dimension - left
+    }
+
+    /// The next coordinate past those at hand.
+    #[inline]
+    fn beyond(&mut self) -> f64 {
+        let dimension = self.dimension;
+        self.dimension = dimension
+            .checked_add(1)
+            .expect("a point has at most 2^32 - 1 coordinates");
+        self.points.coordinate(self.index, dimension)
     }
 }
 
 impl<P: PointSet + ?Sized> Sampler for Cursor<'_, P> {
     #[inline]
     fn next_1d(&mut self) -> f64 {
-        let dimension = self.dimension;
-        self.dimension = dimension
-            .checked_add(1)
-            .expect("a point has at most 2^32 - 1 coordinates");
-        match self.prefix.get(dimension as usize) {
+        match self.ahead.next() {
             Some(&coordinate) => coordinate,
-            None => self.points.coordinate(self.index, dimension),
+            None => self.beyond(),
         }
     }
 }

@@ -42,6 +42,36 @@ impl<V: Value> Stratum<V> {
     }
 }
 
+/// Shares `count` points out in proportion to `scores`, two to each at the least. The rounding is carried on from one to the
+/// next, so that none are lost; scores that are all zero share evenly.
+///
+/// There must be two points for each.
+pub(crate) fn apportion(scores: &[f64], count: u64) -> Vec<u64> {
+    let sum: f64 = scores.iter().sum();
+    let free = count.saturating_sub(2 * scores.len() as u64);
+    let even = 1.0 / scores.len() as f64;
+    let (mut share, mut given) = (0.0, 0);
+    scores
+        .iter()
+        .map(|score| {
+            share += if sum > 0.0 && sum.is_finite() {
+                score / sum
+            } else {
+                even
+            };
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a part of the count"
+            )]
+            let end = ((share * free as f64).round() as u64).clamp(given, free);
+            let here = end - given;
+            given = end;
+            2 + here
+        })
+        .collect()
+}
+
 /// What strata of equal weight say together.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stratified<V> {
@@ -128,10 +158,26 @@ impl<V: Value> Stratified<V> {
         if alike {
             warnings.push(Warning::NoSpread);
         }
-        if self.share > 0.05 {
-            let share = self.share.min(1.0);
+        // Few degrees of freedom are few strata, or few points in them, that decide everything.
+        let share = self.share.max(1.0 / self.freedom).min(1.0);
+        if share > 0.05 {
             warnings.push(Warning::FewValues { share });
         }
         warnings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_shared_out_to_the_last() {
+        assert_eq!(apportion(&[1.0, 1.0, 1.0], 10), [3, 4, 3]);
+        assert_eq!(apportion(&[0.0, 0.0], 5), [3, 2]);
+        assert_eq!(apportion(&[0.0, 3.0, 1.0], 14), [2, 8, 4]);
+        assert_eq!(apportion(&[f64::INFINITY, 1.0], 4), [2, 2]);
+        let many = apportion(&[0.1; 1000], 12_345);
+        assert_eq!(many.iter().sum::<u64>(), 12_345);
     }
 }

@@ -25,7 +25,8 @@ pub enum Warning {
         /// Hill's estimate of the tail's exponent: below 2 there is no variance.
         exponent: f64,
     },
-    /// Fewer than 30 independent values: the interval relies on their being normally distributed.
+    /// Fewer than 30 independent values, or fewer than 10 000 of an adaptive estimator: the interval relies
+    /// on more.
     SmallSample {
         /// How many there were.
         count: u64,

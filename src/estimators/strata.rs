@@ -7,7 +7,7 @@ use rand::rngs::Xoshiro256PlusPlus;
 
 use super::monte_carlo::Streams;
 use crate::evaluate::{Source, Tail, Visit, Wide, evaluate};
-use crate::stratum::{Stratified, Stratum};
+use crate::stratum::{Stratified, Stratum, apportion};
 use crate::tally::Tally;
 use crate::{
     Error, ErrorBar, Estimate, Estimator, Incomplete, Integrand, NonFinite, Outcome, Sampler, Stop,
@@ -140,26 +140,14 @@ impl Strata {
                 f64::sqrt(square)
             })
             .collect();
+        // One point in ten is spread evenly.
         let sum: f64 = scores.iter().sum();
-        let free = count.saturating_sub(2 * self.strata as u64) as f64;
-        let even = free / self.strata as f64;
-        scores
+        let even = sum / self.strata as f64;
+        let scores: Vec<f64> = scores
             .iter()
-            .map(|score| {
-                let share = if sum > 0.0 {
-                    0.1 * even + 0.9 * free * (score / sum)
-                } else {
-                    even
-                };
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "a part of the count"
-                )]
-                let share = share as u64;
-                2 + share
-            })
-            .collect()
+            .map(|score| 0.1 * even + 0.9 * score)
+            .collect();
+        apportion(&scores, count)
     }
 
     fn summary<V: Value>(&self, tallies: &[Tally<V>]) -> Option<Estimate<V>> {
@@ -194,7 +182,7 @@ impl Estimator for Strata {
             spent = each * strata;
             self.allocate(&pilot, self.count - spent)
         } else {
-            vec![self.count / strata; self.strata]
+            apportion(&vec![1.0; self.strata], self.count)
         };
         let (tallies, outcome) = self.run(self.seed, &counts, integrand);
         let estimate = self.summary(&tallies).map(|estimate| Estimate {

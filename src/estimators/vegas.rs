@@ -26,6 +26,9 @@ use adaptation::Adaptation;
 /// [`Warning::NoSpread`] or [`Warning::FewValues`]. Peaks along diagonals gain little. For smooth
 /// integrands a trained map under scrambled nets ([`Mapped`](crate::integrands::Mapped)) is better by far.
 ///
+/// Below 10 000 evaluations the strata's variances are learned from too few points: intervals hold the integral less often than
+/// they claim, and [`Warning::SmallSample`] says so.
+///
 /// All values zero: the map stays as it is, and the estimate is zero. One iteration: it is not trained, and
 /// there is no chi-square.
 ///
@@ -52,6 +55,9 @@ pub struct Vegas {
     map: ImportanceMap,
     trained: bool,
 }
+
+/// Evaluations of an iteration from which on its variances can be relied on.
+const ENOUGH: u64 = 1000;
 
 /// What one iteration of a [`Vegas`] gave.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +103,7 @@ pub struct Adapted<V> {
 }
 
 impl Vegas {
-    /// About `count` evaluations in ten iterations, adapting to the first `dimensions` coordinates; further coordinates are
+    /// About `count` evaluations in ten iterations, or in fewer of a thousand each, adapting to the first `dimensions` coordinates; further coordinates are
     /// independent. `seed` selects the points.
     ///
     /// # Errors
@@ -113,10 +119,13 @@ impl Vegas {
         if count < 40 {
             return Err(Error::refused("count", "at least 40", count));
         }
-        let bins = usize::try_from(count / 10 / FILL).unwrap_or(usize::MAX);
+        #[expect(clippy::cast_possible_truncation, reason = "at most ten")]
+        let iterations = (count / ENOUGH).clamp(2, 10) as u32;
+        let each = count / u64::from(iterations);
+        let bins = usize::try_from(each / FILL).unwrap_or(usize::MAX);
         Ok(Self {
             count,
-            iterations: 10,
+            iterations,
             seed,
             damping: 0.5,
             map: ImportanceMap::identity(dimensions, bins.clamp(1, 1000))?,
@@ -254,27 +263,39 @@ impl Vegas {
             },
             share: largest_share,
         };
+        // Each component's own; largest of all reported.
+        let per_freedom = 1.0 / (number as f64 - 1.0).max(1.0);
+        let consistency = main.iter().fold(V::ZERO, |sum, one| {
+            one.mean
+                .zip(mean, |x, mean| x - mean)
+                .zip(one.std_error, |off, error| match error {
+                    0.0 => 0.0,
+                    error => (off / error).powi(2),
+                })
+                .zip(sum, |part, sum| sum + part * per_freedom)
+        });
         let chi_square = (number > 1).then(|| {
-            let sum = main.iter().fold(V::ZERO, |sum, one| {
-                one.mean
-                    .zip(mean, |x, mean| x - mean)
-                    .zip(one.std_error, |off, error| match error {
-                        0.0 => 0.0,
-                        error => (off / error).powi(2),
-                    })
-                    .zip(sum, |part, sum| sum + part)
-            });
             let mut largest = 0.0_f64;
-            sum.for_each(|sum| largest = largest.max(sum));
-            largest / (number - 1) as f64
+            consistency.for_each(|x| largest = largest.max(x));
+            largest
+        });
+        // Three standard deviations of chi-square per degree of freedom: errors that the iterations contradict are
+        // scaled until they do not.
+        let limit = 1.0 + 3.0 * (2.0 * per_freedom).sqrt();
+        let std_error = std_error.zip(consistency, |error, chi_square| {
+            if chi_square > limit {
+                error * chi_square.sqrt()
+            } else {
+                error
+            }
         });
         let mut warnings = together.warnings();
-        if let Some(chi_square) = chi_square {
-            // Five standard deviations of chi-square per degree of freedom.
-            let limit = 1.0 + 5.0 * (2.0 / (number - 1) as f64).sqrt();
-            if chi_square > limit {
-                warnings.push(Warning::Inconsistent { chi_square });
-            }
+        if self.count < 10 * ENOUGH {
+            let count = self.count;
+            warnings.push(Warning::SmallSample { count });
+        }
+        if let Some(chi_square) = chi_square.filter(|&chi_square| chi_square > limit) {
+            warnings.push(Warning::Inconsistent { chi_square });
         }
         let estimate = Estimate {
             std_error: Some(std_error),

@@ -5,7 +5,7 @@ use rand::rngs::Xoshiro256PlusPlus;
 use super::super::monte_carlo::seeded;
 use crate::block::Block;
 use crate::integrands::{Image, ImportanceMap};
-use crate::stratum::Stratum;
+use crate::stratum::{Stratum, apportion};
 use crate::{Error, Integrand, Sampler, Stream, Value, hash, reduce};
 
 /// The strata: a grid of equal cells over the first axes.
@@ -18,9 +18,9 @@ struct Grid {
 }
 
 impl Grid {
-    /// As many cells as leave four points to each, and two cells along an axis at least.
+    /// As many cells as leave eight points to each, and two cells along an axis at least.
     fn new(dimensions: usize, count: u64) -> Self {
-        let most = (count / 4).min(1 << 16);
+        let most = (count / 8).min(1 << 16);
         let mut grid = Self {
             axes: 0,
             cells: 1,
@@ -46,7 +46,7 @@ impl Grid {
     }
 
     fn evenly(&self, count: u64) -> Vec<u64> {
-        vec![(count / self.strata as u64).max(2); self.strata]
+        apportion(&vec![1.0; self.strata], count)
     }
 }
 
@@ -272,6 +272,7 @@ impl<V: Value> Adaptation<V> {
     pub(super) fn learn(&mut self, pass: &Pass<V>, damping: f64, count: u64) {
         /// Points follow the deviation of their stratum to this power: less than 1, because it is uncertain.
         const FOLLOW: f64 = 0.75;
+        const EVEN: f64 = 0.2;
         let weights: Vec<Vec<f64>> = pass
             .squares
             .iter()
@@ -301,20 +302,13 @@ impl<V: Value> Adaptation<V> {
                 f64::powf(square, 0.5 * FOLLOW)
             })
             .collect();
-        let sum: f64 = scores.iter().sum();
-        if self.counts.len() < 2 || sum.is_nan() || sum <= 0.0 {
-            return;
-        }
-        let free = count.saturating_sub(2 * self.counts.len() as u64) as f64;
-        for (count, score) in self.counts.iter_mut().zip(scores) {
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a part of the count"
-            )]
-            let share = (free * (score / sum)) as u64;
-            *count = 2 + share;
-        }
+        // A part is spread evenly: a stratum that looked constant may not be.
+        let even = scores.iter().sum::<f64>() / scores.len() as f64;
+        let scores: Vec<f64> = scores
+            .iter()
+            .map(|score| EVEN * even + (1.0 - EVEN) * score)
+            .collect();
+        self.counts = apportion(&scores, count);
     }
 }
 

@@ -1,0 +1,276 @@
+//! Stiff and extreme integrands against every method: error, claimed error, coverage, time, warnings.
+//!
+//! `cargo run --release --all-features --example stability -- [--json FILE]` prints the table of `docs/stability.md`.
+
+#[path = "common/methods.rs"]
+mod methods;
+#[path = "common/stiff.rs"]
+mod stiff;
+
+use std::fs;
+use std::process::ExitCode;
+
+use clap::Parser;
+use estimand::integrands::Roulette;
+use estimand::{
+    Average, Error, Estimator, MonteCarlo, NonFinite, Warning, cube, each, points::Independent,
+};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use methods::Method;
+use serde_json::{Value, json};
+use stiff::Case;
+
+/// Runs every method on integrands that are hard to integrate, and says which to use.
+#[derive(Parser)]
+struct Arguments {
+    /// Evaluations of each run
+    #[arg(long, default_value_t = 1 << 14, value_parser = clap::value_parser!(u64).range(1024..))]
+    count: u64,
+    /// Runs of each method on each integrand; fewer in many dimensions
+    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..))]
+    runs: u64,
+    /// Evaluations of the longest run
+    #[arg(long, default_value_t = 1_000_000_000)]
+    longest: u64,
+    /// Also write the table as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<String>,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// What many runs of one method on one integrand gave.
+struct Row {
+    method: Method,
+    error: f64,
+    claimed: f64,
+    covered: f64,
+    warned: f64,
+    warning: Option<Warning>,
+    seconds: f64,
+}
+
+impl Row {
+    /// Whether the intervals hold what they promise.
+    fn holds(&self) -> bool {
+        self.covered >= 0.9
+    }
+
+    /// Whether they do so without a warning in most runs.
+    fn is_sound(&self) -> bool {
+        self.holds() && self.warned <= 0.5
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
+    let cases = stiff::cases();
+    let bar = ProgressBar::with_draw_target(Some(cases.len() as u64), ProgressDrawTarget::stderr());
+    bar.set_style(ProgressStyle::with_template(
+        "{wide_bar} {pos}/{len} {msg}",
+    )?);
+    println!("# Stiff and extreme integrands\n");
+    println!(
+        "{} runs of about {} evaluations of every method, fewer runs in more than ten dimensions. *error*: root mean \
+         square error, *claimed*: mean half width of the 95 % intervals, both relative to the integral (absolute where it is \
+         zero). *covered*: part of the runs whose interval holds the integral. *warned*: part of the runs with a warning, \
+         and the most common. A failing method is one that covers less than 90 %; *instead* names the one of the others with the smallest \
+         error, of those without warnings if there are any, or what to do about the integrand where all fail.\n",
+        arguments.runs, arguments.count
+    );
+    println!(
+        "Made by `cargo run --release --all-features --example stability > docs/stability.md`.\n"
+    );
+    println!("| integrand | method | error | claimed | covered | warned | time (ms) | instead |");
+    println!("|---|---|---:|---:|---:|---|---:|---|");
+    let mut table = Vec::new();
+    for case in &cases {
+        bar.set_message(case.name.clone());
+        let rows: Vec<Row> = Method::ALL
+            .iter()
+            .filter_map(|&method| row(arguments, case, method))
+            .collect();
+        let least = |a: &&Row, b: &&Row| a.error.total_cmp(&b.error);
+        let best = rows
+            .iter()
+            .filter(|row| row.is_sound())
+            .min_by(least)
+            .or_else(|| rows.iter().filter(|row| row.holds()).min_by(least));
+        for row in &rows {
+            let instead = match best {
+                _ if row.holds() => "",
+                Some(best) => best.method.name(),
+                None => case.instead,
+            };
+            let warned = row.warning.map_or_else(String::new, |warning| {
+                format!("{:.0} %: {}", 100.0 * row.warned, short(warning))
+            });
+            println!(
+                "| {} | {} | {:.1e} | {:.1e} | {:.3} | {warned} | {:.2} | {instead} |",
+                case.name,
+                row.method.name(),
+                row.error,
+                row.claimed,
+                row.covered,
+                1e3 * row.seconds
+            );
+            table.push(json!({
+                "integrand": case.name, "dims": case.dims, "method": row.method.name(), "error": row.error,
+                "claimed": row.claimed, "covered": row.covered, "warned": row.warned,
+                "warning": row.warning.map(short), "seconds": row.seconds, "instead": instead,
+            }));
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    let single = single(arguments.longest)?;
+    if let Some(file) = &arguments.json {
+        fs::write(
+            file,
+            serde_json::to_string_pretty(&json!({ "rows": table, "single": single }))?,
+        )?;
+    }
+    Ok(())
+}
+
+fn row(arguments: &Arguments, case: &Case, method: Method) -> Option<Row> {
+    let bounds = case.name.starts_with("indicator").then_some([0.0, 1.0]);
+    let runs = if case.dims > 10 {
+        (arguments.runs * 10 / u64::from(case.dims)).max(4)
+    } else {
+        arguments.runs
+    };
+    let _ = method.estimate(case, bounds, arguments.count, 0)?.ok()?;
+    let results = each(runs, |run| {
+        let estimate = method
+            .estimate(case, bounds, arguments.count, 1 + run)?
+            .ok()?;
+        let interval = estimate.interval(0.95)?;
+        Some((estimate, interval))
+    });
+    let results: Vec<_> = results.into_iter().flatten().collect();
+    let runs = results.len() as f64;
+    let truth = case.integral;
+    let scale = if truth == 0.0 { 1.0 } else { truth.abs() };
+    // What rounding does to the mean of values of this size, which no interval of width zero can hold.
+    let rounding = 4.0 * f64::EPSILON * scale;
+    let mean = |f: &dyn Fn(usize) -> f64| (0..results.len()).map(f).sum::<f64>() / runs;
+    let square = mean(&|run| ((results[run].0.mean - truth) / scale).powi(2));
+    Some(Row {
+        method,
+        error: square.sqrt(),
+        claimed: mean(&|run| 0.5 * (results[run].1.high / scale - results[run].1.low / scale)),
+        covered: mean(&|run| {
+            let interval = results[run].1;
+            f64::from(u8::from(
+                interval.low - rounding <= truth && truth <= interval.high + rounding,
+            ))
+        }),
+        warned: mean(&|run| f64::from(u8::from(!results[run].0.warnings.is_empty()))),
+        warning: results
+            .iter()
+            .find_map(|(estimate, _)| estimate.warnings.first().copied()),
+        seconds: mean(&|run| results[run].0.seconds),
+    })
+}
+
+fn short(warning: Warning) -> &'static str {
+    match warning {
+        Warning::NoSpread => "all values alike",
+        Warning::FewValues { .. } => "few values decide",
+        Warning::HeavyTail { .. } => "heavy tail",
+        Warning::SmallSample { .. } => "small sample",
+        Warning::FewReplicates { .. } => "few replicates",
+        Warning::Rejected { .. } => "values rejected",
+        Warning::Rounding { .. } => "rounding",
+        Warning::Inconsistent { .. } => "iterations contradict",
+        _ => "see the documentation",
+    }
+}
+
+/// What is no matter of statistics: counts, scales in one vector, deep roulette, single bad values.
+fn single(longest: u64) -> Result<Vec<Value>, Box<dyn std::error::Error>> {
+    println!("\n## One run each\n\n| case | outcome |\n|---|---|");
+    let mut table = Vec::new();
+    let mut say = |case: &str, outcome: String| {
+        println!("| {case} | {outcome} |");
+        table.push(json!({ "case": case, "outcome": outcome }));
+    };
+    let square = cube(|[x]| x * x);
+    for count in [0, 1, 2, longest] {
+        let outcome = match MonteCarlo::new(count, 1).estimate(&square) {
+            Ok(estimate) => format!(
+                "mean {:.6}, interval {}, warnings {}, {:.2} s",
+                estimate.mean,
+                estimate.interval(0.95).map_or_else(
+                    || "none".to_owned(),
+                    |interval| format!("[{:.6}, {:.6}]", interval.low, interval.high)
+                ),
+                estimate.warnings.len(),
+                estimate.seconds
+            ),
+            Err(incomplete) => format!("refused: {incomplete}"),
+        };
+        say(&format!("x^2, {count} points"), outcome);
+    }
+    let scales = cube(|[x]| [1e-300 * x, 1e300 * x]);
+    let estimate = MonteCarlo::new(100_000, 1).estimate(&scales)?;
+    let inside = estimate
+        .interval(0.9999)
+        .is_some_and(|interval| interval.contains([0.5e-300, 0.5e300]));
+    say(
+        "x times 1e-300 and 1e300 in one vector",
+        format!("means {:?}, both within 99.99 %: {inside}", estimate.mean),
+    );
+    for exponent in [1, 3, 6, 9] {
+        let survival = 10_f64.powi(-exponent);
+        let roulette = Roulette::new(&square, survival)?;
+        let estimate = MonteCarlo::new(1_000_000, 1).estimate(&roulette)?;
+        let interval = estimate.interval(0.95).ok_or("no interval")?;
+        say(
+            &format!("x^2 with roulette, survival {survival:e}"),
+            format!(
+                "interval [{:.4}, {:.4}]{}",
+                interval.low,
+                interval.high,
+                estimate
+                    .warnings
+                    .first()
+                    .map_or_else(String::new, |warning| format!(", {warning}"))
+            ),
+        );
+    }
+    let bad = cube(|[x]| if x < 1e-6 { f64::NAN } else { x });
+    // The first seed with a bad point.
+    let stopped = (0..)
+        .find_map(|seed| {
+            Average::new(Independent::new(seed), 1_000_000)
+                .estimate(&bad)
+                .err()
+        })
+        .ok_or("every seed passed")?;
+    let named = match &stopped.reason {
+        Error::NonFinite {
+            index, coordinates, ..
+        } => format!("stopped at point {index}, {coordinates:?}"),
+        other => other.to_string(),
+    };
+    let rejecting = MonteCarlo::new(10_000_000, 1).non_finite(NonFinite::Reject);
+    let estimate = rejecting.estimate(&bad)?;
+    say("NaN in one of 10^6 points", named);
+    say(
+        "the same, rejecting",
+        format!(
+            "mean {:.6}, {} rejected of {}",
+            estimate.mean, estimate.rejected, estimate.used
+        ),
+    );
+    Ok(table)
+}

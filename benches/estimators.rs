@@ -101,7 +101,7 @@ fn cases() -> Vec<Case> {
             Box::new(move || {
                 drop(black_box(
                     Replicated::new(16, COUNT / 16, owen).estimate(&f()),
-                ))
+                ));
             }),
         ),
         (

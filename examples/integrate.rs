@@ -140,9 +140,13 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
             let count = (arguments.count / arguments.replicates).max(1);
             let scramble = arguments.scramble.unwrap_or(match set {
                 Set::Sobol => Scramble::HashOwen,
-                Set::Halton | Set::Hammersley => Scramble::Owen,
-                Set::VanDerCorput => Scramble::Shift,
-                Set::Independent | Set::Stratified | Set::NRooks => Scramble::None,
+                Set::Halton | Set::Hammersley | Set::Faure => Scramble::Owen,
+                Set::VanDerCorput | Set::Lattice | Set::Kronecker => Scramble::Shift,
+                Set::Independent
+                | Set::Stratified
+                | Set::NRooks
+                | Set::MultiJittered
+                | Set::OrthogonalArray => Scramble::None,
             });
             let build = move |seed| Choice { scramble, seed }.build(set, problem.dims, count);
             // What is refused is refused here, for every seed alike.

@@ -153,7 +153,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Goes on with an integrand whose integral is known: methods are then [estimators](Estimator).
+    /// Goes on with an integrand whose integral is known: methods are then [estimators](crate::Estimator).
     pub fn integral<I: Integrand>(
         mut self,
         integrand: &'a I,

@@ -38,7 +38,7 @@ use crate::{Error, ErrorBar, Estimate, NonFinite, Sampler, Stream, Value, hash};
 ///
 /// # Errors of the estimate
 ///
-/// [`Error::Refused`] for a count of 0; see [`Estimator::estimate`].
+/// [`Error::Refused`] for a count of 0; see [`Estimator::estimate`](crate::Estimator::estimate).
 #[must_use]
 pub struct MonteCarlo<R = Xoshiro256PlusPlus> {
     count: u64,

@@ -32,7 +32,7 @@ use crate::{Error, ErrorBar, Estimate, Moments, NonFinite, Value, hash};
 /// - [`Error::Refused`] for fewer than two replicates or a count of 0.
 /// - [`Error::IdenticalReplicates`] if two replicates have the same first points, as they do when the
 ///   closure does not use its seed: their spread would be an error bar of zero.
-/// - See also [`Estimator::estimate`].
+/// - See also [`Estimator::estimate`](crate::Estimator::estimate).
 ///
 /// [^lecuyer]: L'Ecuyer, Pierre; Nakayama, Marvin; Owen, Art; Tuffin, Bruno (2023). *Confidence Intervals for
 ///     Randomized Quasi-Monte Carlo Estimators*. <https://doi.org/10.1109/WSC60868.2023.10408613>

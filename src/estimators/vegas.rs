@@ -119,7 +119,6 @@ impl Vegas {
         if count < 40 {
             return Err(Error::refused("count", "at least 40", count));
         }
-        #[expect(clippy::cast_possible_truncation, reason = "at most ten")]
         let iterations = (count / ENOUGH).clamp(2, 10) as u32;
         let each = count / u64::from(iterations);
         let bins = usize::try_from(each / FILL).unwrap_or(usize::MAX);

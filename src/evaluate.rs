@@ -1,5 +1,6 @@
 //! The loop over points: one block at a time, fast if its values are ordinary, carefully if not.
 
+use core::cell::Cell;
 use core::ops::{ControlFlow, Range};
 
 use crate::block::Block;
@@ -28,38 +29,44 @@ pub(crate) trait Visit {
 /// Coordinates computed ahead per call of `fill`: 32 KiB, which the first-level cache holds.
 const AHEAD: usize = 4096;
 
+thread_local! {
+    /// The room for those, kept for the next block of the thread: a pixel of few samples would spend more time on
+    /// making it than on using it. An integrand that runs an estimator of its own finds it taken, and makes another.
+    static ROOM: Cell<Vec<f64>> = const { Cell::new(Vec::new()) };
+}
+
 impl<P: PointSet> Source for P {
     fn points(&self, indices: Range<u64>, _: u64, dimensions: u32, visit: &mut impl Visit) {
         let dimensions = dimensions.min(self.dimensions());
         let width = dimensions as usize;
-        let (mut index, end) = (indices.start, indices.end);
         if width == 0 || width > AHEAD {
-            while index < end {
+            for index in indices {
                 if visit.point(index, self.point(index)).is_break() {
                     return;
                 }
-                index += 1;
             }
             return;
         }
         // A power of two: nets fill such blocks fastest.
         let most = 1 << (AHEAD / width).ilog2();
-        let rows = usize::try_from(end - index).map_or(most, |left| left.min(most));
-        let mut ahead = vec![0.0; rows * width];
-        while index < end {
-            let rows = rows.min(usize::try_from(end - index).unwrap_or(rows));
-            let ahead = &mut ahead[..rows * width];
+        let mut room = ROOM.take();
+        room.resize(AHEAD, 0.0);
+        let (mut index, end) = (indices.start, indices.end);
+        'points: while index < end {
+            let rows = usize::try_from(end - index).map_or(most, |left| left.min(most));
+            let ahead = &mut room[..rows * width];
             self.fill(index, 0..dimensions, ahead);
             for prefix in ahead.chunks_exact(width) {
                 if visit
                     .point(index, Cursor::with_prefix(self, index, prefix))
                     .is_break()
                 {
-                    return;
+                    break 'points;
                 }
                 index += 1;
             }
         }
+        ROOM.set(room);
     }
 }
 

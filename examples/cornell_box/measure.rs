@@ -215,7 +215,7 @@ impl<'a> Meter<'a> {
         let count = repetitions as f64;
         let measurement = Measurement {
             spp,
-            used: points.used(spp),
+            used: first.used() / u64::from(self.size).pow(2),
             seconds: fastest.as_secs_f64(),
             rmse: (squares / count).sqrt(),
             relative_mse: relative / count,

@@ -126,7 +126,7 @@ impl<'a> Meter<'a> {
         (squares / (3 * errors.pixels().len()) as f64).sqrt()
     }
 
-    /// One curve for each point set, and the picture with the smallest error.
+    /// One curve for each point set, and of all first pictures the one with the smallest error.
     ///
     /// All sets are measured at one sample count before any is at the next, so that a run that is stopped has
     /// curves of the same length.
@@ -158,11 +158,9 @@ impl<'a> Meter<'a> {
                     // Better a part of a picture than none.
                     return Ok((curves, Some(best.map_or(image, |(_, image)| image))));
                 };
-                if best
-                    .as_ref()
-                    .is_none_or(|(rmse, _)| measurement.rmse < *rmse)
-                {
-                    best = Some((measurement.rmse, image));
+                let rmse = image.rmse(self.reference)?;
+                if best.as_ref().is_none_or(|(least, _)| rmse < *least) {
+                    best = Some((rmse, image));
                 }
                 curve.samples.push(measurement);
             }
@@ -171,7 +169,8 @@ impl<'a> Meter<'a> {
         Ok((curves, best.map(|(_, image)| image)))
     }
 
-    /// One point of a curve, and one of its pictures. No point if it was stopped.
+    /// One point of a curve, and the picture of its first repetition: how many more there are depends on the machine,
+    /// that one does not. No point if it was stopped before the first was whole.
     fn one(
         &self,
         points: Points,
@@ -182,7 +181,8 @@ impl<'a> Meter<'a> {
         let mut fastest = Duration::MAX;
         let start = Instant::now();
         let before = bar.position();
-        loop {
+        let mut first = None;
+        let first = loop {
             let rows = AtomicU64::new(0);
             let proceed = |_| {
                 let row = rows.fetch_add(1, Ordering::Relaxed);
@@ -194,27 +194,34 @@ impl<'a> Meter<'a> {
             let started = Instant::now();
             let seed = hash(self.seed, repetitions);
             let image = points.render(self.room, self.size, spp, seed, proceed)?;
-            fastest = fastest.min(started.elapsed());
+            let time = started.elapsed();
             if self.stop.load(Ordering::Relaxed) {
-                return Ok((None, image));
+                match first {
+                    Some(first) => break first,
+                    None => return Ok((None, image)),
+                }
             }
+            fastest = fastest.min(time);
             squares += image.rmse(self.reference)?.powi(2);
             relative += image.relative_mse(self.reference)?;
             repetitions += 1;
+            let image = first.unwrap_or(image);
             if start.elapsed() >= LEAST_TIME {
-                bar.set_position(before + u64::from(self.size).pow(2) * spp);
-                let count = repetitions as f64;
-                let measurement = Measurement {
-                    spp,
-                    used: points.used(spp),
-                    seconds: fastest.as_secs_f64(),
-                    rmse: (squares / count).sqrt(),
-                    relative_mse: relative / count,
-                    repetitions,
-                };
-                return Ok((Some(measurement), image));
+                break image;
             }
-        }
+            first = Some(image);
+        };
+        bar.set_position(before + u64::from(self.size).pow(2) * spp);
+        let count = repetitions as f64;
+        let measurement = Measurement {
+            spp,
+            used: first.used() / u64::from(self.size).pow(2),
+            seconds: fastest.as_secs_f64(),
+            rmse: (squares / count).sqrt(),
+            relative_mse: relative / count,
+            repetitions,
+        };
+        Ok((Some(measurement), first))
     }
 }
 

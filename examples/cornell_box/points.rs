@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use estimand::path::{Image, Unfinished};
-use estimand::points::{Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Sobol, Stratified};
+use estimand::points::{Halton, Hammersley, HashedOwen, NRooks, Owen, Sobol, Stratified};
 use estimand::{Average, Estimator, MonteCarlo, hash};
 
 use crate::measure::Room;
@@ -50,15 +50,6 @@ impl Points {
 }
 
 impl Points {
-    /// How many samples a pixel gets where `spp` are asked for.
-    pub(crate) fn used(self, spp: u64) -> u64 {
-        let grid = Stratified::new(spp, 2, 0).expect("the count is positive");
-        match self {
-            Self::Stratified => grid.size().unwrap_or(spp),
-            _ => spp,
-        }
-    }
-
     /// The picture, as [`View::render_while`](estimand::path::View::render_while).
     pub(crate) fn render(
         self,

@@ -3,13 +3,16 @@
 mod difference;
 mod exr;
 mod png;
+mod rows;
 
 use core::fmt;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
-use crate::{Error, Estimate};
+use crate::Error;
+
+pub(in crate::path) use rows::Row;
 
 /// Linear red, green and blue per pixel, row by row from the upper left corner, with or without their standard errors.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +20,15 @@ pub struct Image {
     width: usize,
     mean: Vec<DVec3>,
     std_error: Option<Vec<DVec3>>,
+    evaluations: Evaluations,
+}
+
+/// How many evaluations a picture took, over all pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Evaluations {
+    requested: u64,
+    used: u64,
+    rejected: u64,
 }
 
 impl Image {
@@ -37,16 +49,8 @@ impl Image {
             width,
             mean: pixels,
             std_error: None,
+            evaluations: Evaluations::default(),
         })
-    }
-
-    /// The image of one estimate a pixel; with standard errors if all pixels have one.
-    pub(in crate::path) fn of_estimates([width, _]: [u32; 2], pixels: &[Estimate<DVec3>]) -> Self {
-        Self {
-            width: width as usize,
-            mean: pixels.iter().map(|estimate| estimate.mean).collect(),
-            std_error: pixels.iter().map(|estimate| estimate.std_error).collect(),
-        }
     }
 
     /// The same with the given standard errors.
@@ -75,13 +79,32 @@ impl Image {
         &self.mean
     }
 
-    /// The standard errors of the pixels, as an image of its own.
+    /// The standard errors of the pixels, as an image of its own; infinite where nothing was rendered, never NaN
+    /// there. `None` if any pixel that was rendered has none, as is the case for [`Average`](crate::Average).
     pub fn std_error(&self) -> Option<Self> {
         self.std_error.clone().map(|mean| Self {
             width: self.width,
             mean,
             std_error: None,
+            evaluations: Evaluations::default(),
         })
+    }
+
+    /// How many evaluations of the integrand were asked for, over all pixels that were rendered; 0 for an image that was
+    /// not rendered here.
+    pub fn requested(&self) -> u64 {
+        self.evaluations.requested
+    }
+
+    /// How many evaluations were made, over all pixels: see [`Estimate::used`](crate::Estimate::used).
+    pub fn used(&self) -> u64 {
+        self.evaluations.used
+    }
+
+    /// How many of the values were not finite and left out, over all pixels. Where it is not 0, the picture is too dark
+    /// or too bright by what they stood for.
+    pub fn rejected(&self) -> u64 {
+        self.evaluations.rejected
     }
 
     /// The mean over all pixels.
@@ -115,6 +138,7 @@ impl Image {
                     (sum * sum + error * error / (count * count)).map(f64::sqrt)
                 })
             }),
+            evaluations: self.evaluations,
         })
     }
 

@@ -110,10 +110,12 @@ impl Paths {
             eta *= next.eta;
             if segment >= self.roulette_from {
                 let carried = f64::from(throughput.max_element() * (eta * eta));
-                let Ok(survival) = Survival::new(carried.min(0.95)) else {
-                    break; // It carries nothing.
-                };
-                let Some(weight) = survival.play(u.next_1d()) else {
+                // A black path is common, and an error for each would be slow. NaN goes on, to be seen.
+                if carried <= 0.0 {
+                    break;
+                }
+                let survival = Survival::new(carried.min(0.95)).ok();
+                let Some(weight) = survival.and_then(|survival| survival.play(u.next_1d())) else {
                     break;
                 };
                 #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]

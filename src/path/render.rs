@@ -1,16 +1,17 @@
 //! Pixels as integrands, images as many estimates.
 
 use core::fmt;
+use core::sync::atomic::{AtomicU32, Ordering};
 
 use glam::{DVec3, Vec3};
 
 use super::bsdf::Bsdf;
-use super::image::Image;
+use super::image::{Image, Row};
 use super::light::{Environment, Light};
 use super::sensor::Sensor;
 use super::{Paths, Scene};
-use crate::hash::hash;
-use crate::{Error, Estimate, Estimator, Integrand, Sampler, each};
+use crate::points::pixel;
+use crate::{Error, Estimate, Estimator, Incomplete, Integrand, Sampler, each};
 
 /// The mean radiance over a pixel, as an integral over the unit cube: two coordinates for the point of the pixel,
 /// those of the [sensor](Sensor::ray), those of the [path](Paths::radiance).
@@ -64,35 +65,89 @@ pub struct View<B, L, E, C> {
     pub paths: Paths,
 }
 
-/// A pixel whose estimate had to stop.
+/// A picture that had to stop, with what there is of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unfinished {
-    /// The column and the row of the pixel.
-    pub position: [u32; 2],
     /// Why it stopped.
     pub reason: Error,
+    /// The column and the row of the pixel whose estimate stopped; `None` if it was none of them.
+    pub position: Option<[u32; 2]>,
+    /// The estimate of that pixel, from all evaluations before the one that stopped it; `None` if there were none.
+    pub so_far: Option<Box<Estimate<DVec3>>>,
+    /// The picture with all pixels before that one, row by row. The others, itself included, are black, with infinite
+    /// standard errors. `None` if rendering did not begin.
+    pub image: Option<Box<Image>>,
+}
+
+impl From<Error> for Unfinished {
+    fn from(reason: Error) -> Self {
+        Self {
+            reason,
+            position: None,
+            so_far: None,
+            image: None,
+        }
+    }
 }
 
 impl fmt::Display for Unfinished {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y] = self.position;
-        write!(f, "pixel ({x}, {y}): {}", self.reason)
+        if let Some([x, y]) = self.position {
+            write!(f, "pixel ({x}, {y}): ")?;
+        }
+        write!(f, "{}", self.reason)
     }
 }
 
-impl core::error::Error for Unfinished {}
+impl core::error::Error for Unfinished {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        Some(&self.reason)
+    }
+}
+
+/// Why a row was cut short.
+struct Stopped {
+    position: [u32; 2],
+    incomplete: Incomplete<DVec3>,
+}
 
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor> View<B, L, E, C> {
     /// The picture, of `size[0]` by `size[1]` pixels: for every pixel the estimate of the estimator that `estimator`
-    /// makes from the pixel's seed, a hash of `seed` and of the pixel. So neighbours are independent of one
-    /// another.
+    /// makes from the pixel's seed, which is [`pixel::seed`]`([x, y], seed)`. So neighbours are independent of
+    /// one another, and anybody can compute a pixel again, or go on with it:
+    ///
+    /// ```
+    /// use estimand::path::{Pixel, scenes};
+    /// use estimand::points::pixel;
+    /// use estimand::{Estimator, MonteCarlo};
+    ///
+    /// let view = scenes::cornell_box();
+    /// let (size, [x, y], seed) = ([8, 8], [3, 5], 1);
+    /// let picture = view.render(size, seed, |key| MonteCarlo::new(16, key))?;
+    ///
+    /// let again = Pixel {
+    ///     scene: &view.scene,
+    ///     sensor: &view.sensor,
+    ///     paths: view.paths,
+    ///     position: [x, y],
+    ///     size,
+    /// };
+    /// let again = MonteCarlo::new(16, pixel::seed([x, y], seed)).estimate(&again)?;
+    /// assert_eq!(again.mean, picture.pixels()[(y * size[0] + x) as usize]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// The film of the sensor is stretched over the picture, whatever its size: for square pixels the camera's
+    /// aspect must be `size[0] / size[1]`.
     ///
     /// The box filter of one pixel: nothing of a pixel is seen in its neighbours. The bits are the same
     /// for any number of threads.
     ///
     /// # Errors
     ///
-    /// [`Unfinished`] for the first pixel whose estimate is an error.
+    /// [`Unfinished`] if an estimate is an error: for the first such pixel of the picture, row by row, whatever the
+    /// number of threads. Rows after it are not begun any more; those before it are finished, and are
+    /// [there](Unfinished::image). Also for a picture without pixels.
     pub fn render<T: Estimator>(
         &self,
         size: [u32; 2],
@@ -103,7 +158,8 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor> View<B, L, E, C> {
     }
 
     /// The same, row by row: `proceed` is called with the number of a row, from any thread, before the row is
-    /// rendered. Rows for which it returns `false` stay black.
+    /// rendered. Rows for which it returns `false` stay black, with infinite
+    /// [standard errors](Image::std_error): nothing is known of them.
     ///
     /// # Errors
     ///
@@ -116,35 +172,61 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor> View<B, L, E, C> {
         proceed: impl Fn(u32) -> bool + Sync,
     ) -> Result<Image, Unfinished> {
         let [width, height] = size;
-        let pixel = |x, y| {
-            let position = [x, y];
-            let key = hash(hash(seed, u64::from(y)), u64::from(x));
-            let pixel = Pixel {
-                scene: &self.scene,
-                sensor: &self.sensor,
-                paths: self.paths,
-                position,
-                size,
-            };
-            estimator(key)
-                .estimate(&pixel)
-                .map_err(|stopped| Unfinished {
-                    position,
-                    reason: stopped.reason,
-                })
-        };
-        let row = |y| -> Result<Vec<Estimate<DVec3>>, Unfinished> {
-            let y = u32::try_from(y).unwrap_or(u32::MAX);
-            if proceed(y) {
-                (0..width).map(|x| pixel(x, y)).collect()
-            } else {
-                Ok(vec![Estimate::new(DVec3::ZERO, 0); width as usize])
-            }
-        };
-        let mut estimates = Vec::with_capacity(width as usize * height as usize);
-        for row in each(u64::from(height), row) {
-            estimates.extend(row?);
+        if width == 0 || height == 0 {
+            let given = format_args!("{width} x {height}");
+            return Err(
+                Error::refused("size of the picture", "at least 1 x 1 pixels", given).into(),
+            );
         }
-        Ok(Image::of_estimates(size, &estimates))
+        // The first row that is known to stop. Rows before it go on: one of them may stop too, and is to be reported then.
+        let first_stopped = AtomicU32::new(u32::MAX);
+        let row = |y| {
+            let mut row = Row::new();
+            if y > first_stopped.load(Ordering::Relaxed) || !proceed(y) {
+                return (row, None);
+            }
+            for x in 0..width {
+                let position = [x, y];
+                let integrand = Pixel {
+                    scene: &self.scene,
+                    sensor: &self.sensor,
+                    paths: self.paths,
+                    position,
+                    size,
+                };
+                match estimator(pixel::seed(position, seed)).estimate(&integrand) {
+                    Ok(estimate) => row.push(&estimate),
+                    Err(incomplete) => {
+                        first_stopped.fetch_min(y, Ordering::Relaxed);
+                        let stopped = Stopped {
+                            position,
+                            incomplete,
+                        };
+                        return (row, Some(stopped));
+                    }
+                }
+            }
+            (row, None)
+        };
+        let rows = each(u64::from(height), |y| {
+            row(u32::try_from(y).expect("the height is a u32"))
+        });
+        let mut finished = Vec::with_capacity(rows.len());
+        for (row, stopped) in rows {
+            finished.push(row);
+            if let Some(Stopped {
+                position,
+                incomplete,
+            }) = stopped
+            {
+                return Err(Unfinished {
+                    reason: incomplete.reason,
+                    position: Some(position),
+                    so_far: incomplete.so_far,
+                    image: Some(Box::new(Image::of_rows(size, &finished))),
+                });
+            }
+        }
+        Ok(Image::of_rows(size, &finished))
     }
 }

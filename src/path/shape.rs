@@ -6,6 +6,8 @@
 //! | [`Flat::parallelogram`] | that of `first_edge x second_edge` |
 //! | [`cuboid`]: six parallelograms | outside |
 //! | [`Sphere`] | outside |
+//!
+//! Unlike materials, lights and cameras, shapes cannot be added from outside for now: see [`Primitive`].
 
 mod cuboid;
 mod flat;
@@ -41,7 +43,10 @@ pub trait Shape {
     fn density(&self, from: Vec3A, surface: &Surface) -> f32;
 }
 
-/// Any of the shapes of this module.
+/// Any of the shapes of this module: all that a scene can be made of.
+///
+/// It is closed for now: a [`Shape`] of your own can be intersected and drawn from, but is no part of a
+/// [`Scene`](super::Scene), whose sweep and tree know these alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Primitive {
     /// A triangle or a parallelogram.

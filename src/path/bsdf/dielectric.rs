@@ -27,7 +27,8 @@ impl Dielectric {
     ///
     /// # Errors
     ///
-    /// [`Error::Refused`] for an index that is not positive and finite.
+    /// [`Error::Refused`] for an index that is not positive and finite, and for two so far apart that the square of
+    /// their quotient, or of its inverse, is none of `f32`.
     pub fn new(inside: f32, outside: f32) -> Result<Self, Error> {
         for index in [inside, outside] {
             if !(index > 0.0 && index.is_finite()) {
@@ -38,9 +39,17 @@ impl Dielectric {
                 ));
             }
         }
-        Ok(Self {
-            eta: inside / outside,
-        })
+        let eta = inside / outside;
+        // What weights are made of, on the way in and out.
+        let square = eta * eta;
+        if !(square > 0.0 && square.is_finite() && square.recip().is_finite()) {
+            return Err(Error::refused(
+                "quotient of the indices of refraction",
+                "positive and finite, its square and that of its inverse too",
+                format_args!("{inside} / {outside}"),
+            ));
+        }
+        Ok(Self { eta })
     }
 }
 
@@ -129,6 +138,25 @@ mod tests {
         // Total reflection from inside past sin = 1 / n.
         assert_eq!(refraction(0.7, 1.0 / n).reflected, 1.0);
         assert!(refraction(0.8, 1.0 / n).reflected < 1.0);
+    }
+
+    #[test]
+    fn indices_too_far_apart_are_refused() {
+        for (inside, outside) in [
+            (f32::MAX, f32::MIN_POSITIVE),
+            (f32::MIN_POSITIVE, f32::MAX),
+            (1e20, 1.0),
+            (1.0, 1e20),
+            (1e-20, 1.0),
+            (0.0, 1.0),
+            (1.0, f32::NAN),
+        ] {
+            assert!(
+                Dielectric::new(inside, outside).is_err(),
+                "{inside} in {outside}"
+            );
+        }
+        assert!(Dielectric::new(4.0, 1.0).is_ok());
     }
 
     #[test]

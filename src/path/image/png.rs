@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ::image::{Rgb, RgbImage};
+use ::image::RgbImage;
 
 use super::{FileError, Image};
 
@@ -28,7 +28,7 @@ impl Image {
             .iter()
             .flat_map(|pixel| pixel.to_array().map(encoded));
         RgbImage::from_raw(width, height, pixels.collect())
-            .unwrap_or_else(|| RgbImage::from_pixel(width, height, Rgb([0; 3])))
+            .ok_or_else(|| FileError::new(path, "too large a picture"))?
             .save_with_format(path, ::image::ImageFormat::Png)
             .map_err(|reason| FileError::new(path, reason))
     }

@@ -41,7 +41,7 @@ impl AreaLights {
         let [_, rest @ ..] = &self.choices[..] else {
             return (0, u);
         };
-        let chosen = rest.iter().take_while(|choice| choice.before <= u).count();
+        let chosen = rest.partition_point(|choice| choice.before <= u);
         let Choice {
             probability,
             before,

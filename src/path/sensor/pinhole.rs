@@ -19,7 +19,7 @@ pub struct Pinhole {
 
 impl Pinhole {
     /// The camera at `origin` that looks at `target`, with `up` upwards in the picture, for a picture with the given
-    /// `aspect`, width over height, that spans `width_degrees` across.
+    /// `aspect`, width over height, that spans `width_degrees` across. Pictures of another aspect are stretched.
     ///
     /// # Errors
     ///

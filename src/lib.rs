@@ -70,8 +70,9 @@
 //! | where the error bar comes from | [`Estimator`] | [`estimators`] |
 //!
 //! Every combination works, and your own file on one axis works with all of the other two. Beside them:
-//! [`discrepancy`] measures how even a set of points is, [`hash`] is the randomness that needs no state, [`Moments`]
-//! adds up values without losing digits.
+//! [`warp`] leads from the unit cube to other domains, [`discrepancy`] measures how even a set of points is,
+//! [`convergence`] compares methods by error against run time, [`hash`] is the randomness that needs no state,
+//! [`Moments`] adds up values without losing digits. The feature `path` adds the module `path`, the path tracer.
 //!
 //! # Limits
 //!
@@ -90,6 +91,7 @@
 //! | `simd` (default) | vector code chosen at run time; the same bits | `pulp` |
 //! | `glam` | glam's vectors as values | `glam` |
 //! | `serde` | saving and restoring estimates | `serde` |
+//! | `sobol-full` | Sobol' points in up to 21201 dimensions, not 1024 | 1.6 MB of tables |
 //! | `path` | the path tracer | `glam`, `obvhs`, `exr`, `image` |
 //!
 //! Without features the crate depends on `rand` alone.
@@ -133,3 +135,8 @@ pub use sampler::{Cursor, Sampler, Stream};
 pub use tallied::Tallies;
 pub use value::Value;
 pub use warning::Warning;
+
+/// The README's example, compiled and run with the documentation's.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -8,13 +8,13 @@
 mod agreement;
 
 use agreement::{Batches, Reference};
-use estimand::hash::hash;
+use estimand::hash::{hash, unit};
 use estimand::path::bsdf::{Bsdf, Lambertian};
 use estimand::path::light::{AreaLights, Environment, Light, NoEnvironment};
 use estimand::path::scenes::{self, CORNELL_LIGHT};
 use estimand::path::sensor::{Pinhole, Sensor};
 use estimand::path::{Image, View};
-use estimand::points::{Halton, HashedOwen, Owen, Sobol, Stratified};
+use estimand::points::{Halton, Hammersley, HashedOwen, NRooks, Owen, Sobol, Stratified};
 use estimand::{Average, Estimator, MonteCarlo};
 
 fn reference(name: &'static str, size: usize, samples: u64) -> Reference {
@@ -65,20 +65,31 @@ fn cornell_box() {
 fn cornell_box_of_eight_segments() {
     let reference = reference("cornell_box_depth_8", 128, 32768);
     let view = short_paths(8);
-    let ours = batches(&view, 128, 16, 2, |seed| MonteCarlo::new(16, seed));
+    let ours = batches(&view, 128, 8, 2, |seed| MonteCarlo::new(8, seed));
     reference.compare(&ours, "monte-carlo").check();
-    let ours = batches(&view, 128, 16, 3, |seed| {
-        Average::new(Stratified::new(16, 2, seed).unwrap(), 16)
+    // A grid of 3 by 3.
+    let ours = batches(&view, 128, 9, 3, |seed| {
+        Average::new(Stratified::new(9, 2, seed).unwrap(), 9)
     });
     reference.compare(&ours, "stratified").check();
+    let ours = batches(&view, 128, 8, 11, |seed| {
+        Average::new(NRooks::new(8, seed).unwrap(), 8)
+    });
+    reference.compare(&ours, "n-rooks").check();
     let halton = Halton::new(32).unwrap();
-    let ours = batches(&view, 128, 12, 4, |seed| {
-        Average::new(halton.clone().scrambled(Owen { seed }), 12)
+    let ours = batches(&view, 128, 8, 4, |seed| {
+        Average::new(halton.clone().scrambled(Owen { seed }), 8)
     });
     reference.compare(&ours, "halton").check();
+    let hammersley = Hammersley::new(8, 32).unwrap();
+    let ours = batches(&view, 128, 8, 12, |seed| {
+        let points = hammersley.clone().offset(unit(hash(seed, 0))).unwrap();
+        Average::new(points.scrambled(Owen { seed }), 8)
+    });
+    reference.compare(&ours, "hammersley").check();
     let sobol = Sobol::new(32).unwrap();
-    let ours = batches(&view, 128, 16, 5, |seed| {
-        Average::new(sobol.clone().scrambled(HashedOwen { seed }), 16)
+    let ours = batches(&view, 128, 8, 5, |seed| {
+        Average::new(sobol.clone().scrambled(HashedOwen { seed }), 8)
     });
     reference.compare(&ours, "sobol").check();
 }
@@ -112,21 +123,28 @@ fn bodies_under_a_sky() {
         .check();
 }
 
-/// What the comparison is for: that errors of a few parts in a thousand do not pass.
+/// What the comparison is for: that errors of a few parts in a thousand do not pass, with whatever points.
 #[test]
 fn biased_pictures_do_not_agree() {
     let reference = reference("cornell_box_depth_8", 128, 32768);
-    let one_less = batches(&short_paths(7), 128, 16, 9, |seed| {
-        MonteCarlo::new(16, seed)
-    });
-    let outcome = reference.compare(&one_less, "one-bounce-less");
-    assert!(!outcome.holds(), "{outcome}");
-    assert!(outcome.map().exists());
-
-    let brighter = CORNELL_LIGHT.map(|radiance| 1.01 * radiance);
-    let mut view = scenes::cornell_box_lit(brighter).unwrap();
-    view.paths = view.paths.longest(8).unwrap();
-    let brighter = batches(&view, 128, 16, 10, |seed| MonteCarlo::new(16, seed));
-    let outcome = reference.compare(&brighter, "brighter-light");
-    assert!(!outcome.holds(), "{outcome}");
+    let one_less = short_paths(7);
+    let mut brighter =
+        scenes::cornell_box_lit(CORNELL_LIGHT.map(|radiance| 1.01 * radiance)).unwrap();
+    brighter.paths = brighter.paths.longest(8).unwrap();
+    let sobol = Sobol::new(32).unwrap();
+    let cases = [
+        (&one_less, "one-bounce-less"),
+        (&brighter, "brighter-light"),
+    ];
+    for (view, label) in cases {
+        let plain = batches(view, 128, 16, 9, |seed| MonteCarlo::new(16, seed));
+        let nets = batches(view, 128, 16, 10, |seed| {
+            Average::new(sobol.clone().scrambled(HashedOwen { seed }), 16)
+        });
+        for (ours, points) in [(plain, "monte-carlo"), (nets, "sobol")] {
+            let outcome = reference.compare(&ours, &format!("{label}-{points}"));
+            assert!(!outcome.holds(), "{outcome}");
+            assert!(outcome.map().exists());
+        }
+    }
 }

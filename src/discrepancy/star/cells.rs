@@ -47,7 +47,7 @@ pub(super) fn search(grid: &Grid, lower: f64, gap: f64, limit: u64) -> Found {
         complete: true,
         work: 0,
     };
-    let mut frontier = Search::new(grid, lower, gap, u64::MAX);
+    let mut frontier = Search::new(grid, lower, gap, limit);
     let mut cells = vec![Cell::all(grid)];
     while !cells.is_empty() && cells.len() < JOBS {
         cells = cells

@@ -2,14 +2,12 @@
 
     pip install -r reference/requirements-scipy.txt
     python reference/discrepancy.py values > reference/discrepancy.json
-    cargo build --release --all-features --example discrepancy
-    python reference/discrepancy.py speed
-    cargo bench --all-features --bench discrepancy && python reference/discrepancy.py growth
+    python reference/discrepancy.py tables
 
 `values` prints small sets of points, whose coordinates are whole multiples of 1/1024, with their squared L2
 discrepancies: in exact rational arithmetic from the definitions as double sums, and by scipy where it has them.
-`speed` measures scipy and the crate's program on the same points in turns, and prints the least of the times.
-`growth` fits powers of the count to the least times that criterion has kept.
+`tables` builds the crate's program, runs its benches, and writes all tables of benches/DISCREPANCY.md anew; with
+names of tables after it, those alone: machine, speed, large, point_sets, growth.
 """
 
 import glob
@@ -116,9 +114,8 @@ def values():
     print()
 
 
-PROGRAM = os.path.join(
-    os.path.dirname(__file__), "..", "target", "release", "examples", "discrepancy"
-)
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
+PROGRAM = os.path.join(ROOT, "target", "release", "examples", "discrepancy")
 
 
 def ours(arguments, threads):
@@ -130,9 +127,10 @@ def ours(arguments, threads):
 
 
 def speed(repeats=5):
+    """Times beside scipy's, in turns: a table."""
     points = numpy.random.default_rng(1).random((10_000, 8))
-    print("L2 family, n = 10^4, d = 8: least of", repeats, "times in ms")
-    print(f"{'':12} {'threads':>7} {'scipy':>8} {'here':>8} {'ratio':>6}  relative difference")
+    yield "| | threads | scipy | estimand | ratio | relative difference |"
+    yield "|---|---|---|---|---|---|"
     with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
         for row in points:
             file.write(",".join(repr(float(x)) for x in row) + "\n")
@@ -150,11 +148,16 @@ def speed(repeats=5):
                     value = value**2
                 difference = abs(value / answer["value"] - 1)
                 theirs, mine = 1e3 * min(theirs), 1e3 * min(mine)
-                print(
-                    f"{kind:12} {threads:7} {theirs:8.1f} {mine:8.1f} {mine / theirs:6.3f}"
-                    f"  {difference:.1e}"
+                yield (
+                    f"| {kind} | {threads} | {theirs:.0f} | {mine:.0f} | {mine / theirs:.3f} "
+                    f"| {difference:.0e} |"
                 )
-    print("\nOf Halton's points, with two threads: least of 3 times in s")
+
+
+def large():
+    """Times of large sets of Halton's points, with two threads: a table."""
+    yield "| | n | d | seconds | to reach |"
+    yield "|---|---|---|---|---|"
     for metric, count, dimensions, target in (
         ("l2-star", 10**6, 2, 2),
         ("l2-star", 10**6, 4, 60),
@@ -163,19 +166,40 @@ def speed(repeats=5):
         ("star", 200, 5, 10),
         ("star", 100, 7, 20),
     ):
-        arguments = ["halton", "--metric", metric, "--count", str(count), "--dims", str(dimensions)]
-        arguments += ["--kind", "exact", "--budget", "1000"]
-        answers = [ours(arguments, 2) for _ in range(3 if target < 60 else 1)]
-        seconds = min(answer["seconds"] for answer in answers)
-        value = answers[0]["value"]
-        print(
-            f"{metric:8} n = {count:7} d = {dimensions}: {seconds:7.3f} (to reach: {target})"
-            f"  {answers[0]['kind']} {value!r}"
-        )
+        seconds = exact_seconds("halton", metric, count, dimensions, 3 if target < 60 else 1, 2)
+        yield f"| {metric} | {count} | {dimensions} | {seconds:.2f} | {target} |"
+
+
+def exact_seconds(name, metric, count, dimensions, repeats, threads):
+    arguments = [name, "--metric", metric, "--count", str(count), "--dims", str(dimensions)]
+    arguments += ["--kind", "exact", "--budget", "1000"]
+    return min(ours(arguments, threads)["seconds"] for _ in range(repeats))
+
+
+def slope(times):
+    """The power of the count that fits the times."""
+    xs, ys = [log(n) for n, _ in times], [log(t) for _, t in times]
+    x, y = sum(xs) / len(xs), sum(ys) / len(ys)
+    return sum((a - x) * (b - y) for a, b in zip(xs, ys)) / sum((a - x) ** 2 for a in xs)
+
+
+def point_sets():
+    """Times of the exact star discrepancy of several sets, the counts doubling, one thread: a table."""
+    yield "| | d | n: ms | growth | 1 + d/2 |"
+    yield "|---|---|---|---|---|"
+    for dimensions, counts in ((3, (125, 250, 500, 1000)), (5, (25, 50, 100, 200))):
+        for name in ("independent", "halton", "sobol", "lattice"):
+            times = [
+                (n, 1e3 * exact_seconds(name, "star", n, dimensions, 3, 1)) for n in counts
+            ]
+            shown = ", ".join(f"{n}: {t:.3g}" for n, t in times)
+            power = 1 + dimensions / 2
+            yield f"| {name} | {dimensions} | {shown} | n^{slope(times):.2f} | {power} |"
 
 
 def growth():
-    root = os.path.join(os.path.dirname(__file__), "..", "target", "criterion")
+    """The least times that criterion has kept: a table."""
+    root = os.path.join(ROOT, "target", "criterion")
     groups = {}
     for path in glob.glob(os.path.join(root, "*", "*", "new", "benchmark.json")):
         with open(path) as file:
@@ -186,18 +210,49 @@ def growth():
             sample = json.load(file)
         least = min(t / i for t, i in zip(sample["times"], sample["iters"])) / 1e6
         groups.setdefault(benchmark["group_id"], []).append((int(benchmark["value_str"]), least))
-    print("| | n: ms | growth |\n|---|---|---|")
+    yield "| | n: ms | growth |"
+    yield "|---|---|---|"
     for name, times in sorted(groups.items()):
         times.sort()
-        xs, ys = [log(n) for n, _ in times], [log(t) for _, t in times]
-        x, y = sum(xs) / len(xs), sum(ys) / len(ys)
-        slope = sum((a - x) * (b - y) for a, b in zip(xs, ys)) / sum((a - x) ** 2 for a in xs)
         shown = ", ".join(f"{n}: {t:.3g}" for n, t in times)
-        print(f"| {name} | {shown} | n^{slope:.2f} |")
+        yield f"| {name} | {shown} | n^{slope(times):.2f} |"
+
+
+def machine():
+    """Where and with what the tables were measured."""
+    with open("/proc/cpuinfo") as file:
+        model = next(line.split(":")[1].strip() for line in file if line.startswith("model name"))
+    load = os.getloadavg()[0]
+    yield f"{os.cpu_count()} cores of {model}; {load:.1f} jobs running when it began; scipy {scipy.__version__}."
+
+
+TABLES = {f.__name__: f for f in (machine, speed, large, point_sets, growth)}
+
+
+def tables(names):
+    """Measures, and writes what it finds into the file of the tables."""
+    features = ["--release", "--all-features", "--example", "discrepancy"]
+    subprocess.run(["cargo", "build", *features], cwd=ROOT, check=True)
+    if "growth" in names:
+        bench = ["cargo", "bench", "--all-features", "--bench", "discrepancy"]
+        subprocess.run(bench, cwd=ROOT, check=True)
+    path = os.path.join(ROOT, "benches", "DISCREPANCY.md")
+    for name in names:
+        measured = "\n".join(TABLES[name]())
+        with open(path) as file:
+            text = file.read()
+        begin, end = f"<!-- begin {name} -->\n", f"\n<!-- end {name} -->"
+        before, rest = text.split(begin)
+        _, after = rest.split(end)
+        with open(path, "w") as file:
+            file.write(before + begin + measured + end + after)
+        print(measured, flush=True)
 
 
 if __name__ == "__main__":
-    commands = {"values": values, "speed": speed, "growth": growth}
-    if len(sys.argv) != 2 or sys.argv[1] not in commands:
+    if sys.argv[1:] == ["values"]:
+        values()
+    elif sys.argv[1:2] == ["tables"] and set(sys.argv[2:]) <= set(TABLES):
+        tables(sys.argv[2:] or list(TABLES))
+    else:
         sys.exit(__doc__)
-    commands[sys.argv[1]]()

@@ -1,6 +1,7 @@
 //! Discrepancies against published values, closed forms and exhaustive search.
 
 use estimand::discrepancy::{Boundary, LocalCurve, Points, Star, StarDiscrepancy, local, star};
+use estimand::points::{Independent, Owen, Sobol};
 use proptest::prelude::*;
 
 /// The radical inverse as the quotient of two whole numbers: right to the last bit.
@@ -314,6 +315,29 @@ fn the_walk_finds_what_the_search_proves() {
             "{count} in {dimensions}: {value} {truth}"
         );
     }
+}
+
+#[test]
+fn the_walk_is_never_above_and_mostly_at_the_value_of_sets_it_was_not_tuned_on() {
+    // The walk was tuned on Halton's points. Seeds are fixed, so that the share found is a fact and no chance.
+    let (mut found, mut sets) = (0, 0);
+    for (count, dimensions) in [(128, 3), (64, 4), (48, 5), (32, 6), (24, 7)] {
+        for seed in 0..8 {
+            let scrambled = Sobol::new(dimensions).unwrap().scrambled(Owen { seed });
+            for points in [
+                Points::from_set(&Independent::new(seed), 0..count, dimensions).unwrap(),
+                Points::from_set(&scrambled, 0..count, dimensions).unwrap(),
+            ] {
+                let value = Star::default().lower_bound(&points).lower();
+                let truth = Star::default().exact(&points).unwrap().lower();
+                assert!(value <= truth + 1e-15, "{value} {truth}");
+                assert!(value >= 0.9 * truth, "{value} {truth}");
+                sets += 1;
+                found += u32::from(value >= truth - 1e-15);
+            }
+        }
+    }
+    assert!(10 * found >= 9 * sets, "{found} of {sets}");
 }
 
 #[test]

@@ -146,8 +146,8 @@ fn spread_too_small_for_its_squares_is_not_taken_for_none() {
             -1e-200
         }
     });
-    let replicated = Average::new(Thirds, 999).estimate(&f).unwrap();
-    assert_eq!(replicated.mean, 0.0);
+    let average = Average::new(Thirds, 999).estimate(&f).unwrap();
+    assert!(average.mean.abs() < 1e-213, "{}", average.mean);
     let estimate = MonteCarlo::new(999, 1).estimate(&f).unwrap();
     // The standard deviation is sqrt(2/3) 1e-200, within 6 times its own 1 %.
     let expected = (2.0_f64 / 3.0 / 999.0).sqrt();

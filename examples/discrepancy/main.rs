@@ -260,6 +260,14 @@ fn read(
                     }
                     row.truncate(dimensions);
                 }
+                let place = || format!("{}:{number}", path.display());
+                if let Some(first) = rows.first().filter(|first| first.len() != row.len()) {
+                    let (first, here) = (first.len(), row.len());
+                    return Err(format!("{}: {here} coordinates, not {first}", place()).into());
+                }
+                if let Some(outside) = row.iter().find(|x| !(0.0..=1.0).contains(*x)) {
+                    return Err(format!("{}: {outside} is not in [0, 1]", place()).into());
+                }
                 rows.push(row);
             }
             Err(_) if rows.is_empty() && number == 1 => {}
@@ -271,6 +279,9 @@ fn read(
     }
     if let Some(count) = count.filter(|&count| count > rows.len() as u64) {
         return Err(format!("{}: {} points, not {count}", path.display(), rows.len()).into());
+    }
+    if rows.is_empty() {
+        return Err(format!("{}: no points", path.display()).into());
     }
     Ok(Points::from_slices(&rows)?)
 }

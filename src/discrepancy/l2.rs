@@ -44,21 +44,55 @@ pub use updatable::UpdatableL2;
 pub enum L2 {
     /// Boxes anchored at the origin; the integral of the squared local discrepancy over all corners.[^warnock]
     ///
-    /// `K(x, y) = 1 - max(x, y)`, `h(x) = (1 - x^2) / 2`, `c = 1/3`.
+    /// `D^2 = int (vol [0, y) - #{x in [0, y)} / n)^2 dy`: `K(x, y) = 1 - max(x, y)`, `h(x) = (1 - x^2) / 2`,
+    /// `c = 1/3`.
+    ///
+    /// The point 1/2: the mean of `y^2` below it and of `(1 - y)^2` above is `1/3 - 2 * 3/8 + 1/2 = 1/12`.
+    ///
+    /// ```
+    /// # use estimand::discrepancy::{L2, Points};
+    /// let half = Points::from_rows(&[0.5], 1)?;
+    /// assert!((L2::Star.squared(&half) - 1.0 / 12.0).abs() < 1e-15);
+    /// # Ok::<(), estimand::Error>(())
+    /// ```
     ///
     /// [^warnock]: Warnock, Tony (1972). *Computational Investigations of Low-Discrepancy Point Sets*.
     ///     <https://doi.org/10.1016/B978-0-12-775950-0.50015-7>
     Star,
     /// Boxes anchored at the corner of the cube that is nearest, in all projections.[^hickernell]
     ///
+    /// `D^2 = sum_u int (vol J(y) - #{x in J(y)} / n)^2 dy`, over all sets `u` of dimensions but the empty one, with `J(y)`
+    /// between `y` and the corner nearest to it, and points projected onto `u`.
+    ///
     /// With `a = |x - 1/2|` and `b = |y - 1/2|`: `K = 1 + (a + b - |x - y|) / 2`, `h = 1 + (a - a^2) / 2`, `c = 13/12`.
+    ///
+    /// The point 1/2: no box holds it inside, and the mean of the squared length is `13/12 - 2 + 1 = 1/12`.
+    ///
+    /// ```
+    /// # use estimand::discrepancy::{L2, Points};
+    /// let half = Points::from_rows(&[0.5], 1)?;
+    /// assert!((L2::Centred.squared(&half) - 1.0 / 12.0).abs() < 1e-15);
+    /// # Ok::<(), estimand::Error>(())
+    /// ```
     ///
     /// [^hickernell]: Hickernell, Fred (1998). *A Generalized Discrepancy and Quadrature Error Bound*.
     ///     <https://doi.org/10.1090/S0025-5718-98-00894-1>
     Centred,
     /// Boxes with any two corners, wrapped around the torus, in all projections.[^wrap]
     ///
+    /// `D^2 = sum_u int int (vol J(y, z) - #{x in J(y, z)} / n)^2 dy dz` over all sets `u` of dimensions but the empty one, with
+    /// `J(y, z)` from `y` up to `z`, through 1 if `z` is below `y`.
+    ///
     /// With `t = |x - y|`: `K = 3/2 - t (1 - t)`, `h = c = 4/3`.
+    ///
+    /// A single point anywhere in one dimension: `4/3 - 2 * 4/3 + 3/2 = 1/6`.
+    ///
+    /// ```
+    /// # use estimand::discrepancy::{L2, Points};
+    /// let half = Points::from_rows(&[0.5], 1)?;
+    /// assert!((L2::WrapAround.squared(&half) - 1.0 / 6.0).abs() < 1e-15);
+    /// # Ok::<(), estimand::Error>(())
+    /// ```
     ///
     /// [^wrap]: Hickernell, Fred (1998). *Lattice Rules: How Well Do They Measure Up?*
     ///     <https://doi.org/10.1007/978-1-4612-1702-2_3>
@@ -68,18 +102,49 @@ pub enum L2 {
     /// With `a = |x - 1/2|`, `b = |y - 1/2|`, `t = |x - y|`: `K = 15/8 - (a + b + 3 t - 2 t^2) / 4`,
     /// `h = 5/3 - (a + a^2) / 4`, `c = 19/12`.
     ///
+    /// The point 1/2: `19/12 - 2 * 5/3 + 15/8 = 1/8`, the mean of 1/12 and 1/6.
+    ///
+    /// ```
+    /// # use estimand::discrepancy::{L2, Points};
+    /// let half = Points::from_rows(&[0.5], 1)?;
+    /// assert!((L2::Mixture.squared(&half) - 1.0 / 8.0).abs() < 1e-15);
+    /// # Ok::<(), estimand::Error>(())
+    /// ```
+    ///
     /// [^zhou]: Zhou, Yong-Dao; Fang, Kai-Tai; Ning, Jian-Hui (2013). *Mixture Discrepancy for Quasi-Random Point
     ///     Sets*. <https://doi.org/10.1016/j.jco.2012.11.006>
     Mixture,
     /// Unions of boxes anchored at an even number of steps from a corner, in all projections.[^symmetric]
     ///
+    /// `D^2 = sum_u 4 int (vol J(y) - #{x in J(y)} / n)^2 dy` over all sets `u` of dimensions but the empty one, with `J(y)`
+    /// the points at or above `y` along an even number of the dimensions.
+    ///
     /// `K = 2 - 2 |x - y|`, `h = 1 + 2 x - 2 x^2`, `c = 4/3`.
+    ///
+    /// The point 1/2: `4/3 - 2 * 3/2 + 2 = 1/3`, four times the square of the star.
+    ///
+    /// ```
+    /// # use estimand::discrepancy::{L2, Points};
+    /// let half = Points::from_rows(&[0.5], 1)?;
+    /// assert!((L2::Symmetric.squared(&half) - 1.0 / 3.0).abs() < 1e-15);
+    /// # Ok::<(), estimand::Error>(())
+    /// ```
     ///
     /// [^symmetric]: Hickernell (1998), as for [`Centred`](Self::Centred), section 5.
     Symmetric,
     /// Boxes with any two corners inside the cube, also called unanchored.[^morokoff]
     ///
-    /// `K = min(x, y) - x y`, `h = (x - x^2) / 2`, `c = 1/12`.
+    /// `D^2 = int int (vol [y, z) - #{x in [y, z)} / n)^2 dy dz` over all `y <= z`: `K = min(x, y) - x y`,
+    /// `h = (x - x^2) / 2`, `c = 1/12`.
+    ///
+    /// The point 1/2: `1/12 - 2 * 1/8 + 1/4 = 1/12`.
+    ///
+    /// ```
+    /// # use estimand::discrepancy::{L2, Points};
+    /// let half = Points::from_rows(&[0.5], 1)?;
+    /// assert!((L2::Extreme.squared(&half) - 1.0 / 12.0).abs() < 1e-15);
+    /// # Ok::<(), estimand::Error>(())
+    /// ```
     ///
     /// [^morokoff]: Morokoff, William; Caflisch, Russel (1994). *Quasi-Random Sequences and Their Discrepancies*.
     ///     <https://doi.org/10.1137/0915077>
@@ -88,7 +153,14 @@ pub enum L2 {
     /// frequencies `f` but 0.[^zinterhof]
     ///
     /// With `t = |x - y|`: `K = 1 + 2 pi^2 (t^2 - t + 1/6)`, `h = c = 1`. Not normalised: a single point has a square of
-    /// `(1 + pi^2 / 3)^d - 1`.
+    /// `(1 + pi^2 / 3)^d - 1`: in one dimension twice the sum of all `f^-2`, which is `pi^2 / 6`.
+    ///
+    /// ```
+    /// # use estimand::discrepancy::{L2, Points};
+    /// let half = Points::from_rows(&[0.5], 1)?;
+    /// assert!((L2::Diaphony.squared(&half) - std::f64::consts::PI.powi(2) / 3.0).abs() < 1e-14);
+    /// # Ok::<(), estimand::Error>(())
+    /// ```
     ///
     /// [^zinterhof]: Zinterhof, Peter (1976). *Über einige Abschätzungen bei der Approximation von Funktionen mit
     ///     Gleichverteilungsmethoden*. Sitzungsberichte der Österreichischen Akademie der Wissenschaften II 185.

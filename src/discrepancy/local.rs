@@ -54,6 +54,7 @@ pub fn local(points: &Points<'_>, corner: &[f64]) -> Result<f64, Error> {
 /// ```
 /// use estimand::discrepancy::{LocalCurve, Points};
 ///
+/// // At 1/4 there is no point below, and one of two at or below: 1/4 - 0 and 1/4 - 1/2.
 /// let curve = LocalCurve::new(&Points::from_rows(&[0.75, 0.25], 1)?)?;
 /// let knots = curve.knots();
 /// assert_eq!((knots[1].corner, knots[1].below, knots[1].above), (0.25, 0.25, -0.25));

@@ -16,7 +16,8 @@ use crate::{Error, reduce};
 /// ```
 /// use estimand::discrepancy::{Periodogram, Points};
 ///
-/// // A grid of 2 x 2 integrates all frequencies exactly that are not both even.
+/// // A grid of 2 x 2 integrates all frequencies exactly that are not both even; at those all four waves are 1, and the
+/// // power is 4^2 / 4.
 /// let grid = [[0.0, 0.0], [0.0, 0.5], [0.5, 0.0], [0.5, 0.5]];
 /// let spectrum = Periodogram::new(&Points::from_arrays(&grid)?, 2)?;
 /// assert!(spectrum.power(1, 0) < 1e-30);

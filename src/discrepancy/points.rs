@@ -98,10 +98,11 @@ impl<'a> Points<'a> {
             ));
         }
         let count = indices.end.saturating_sub(indices.start);
+        let mut rows = Vec::new();
         let coordinates = count
             .checked_mul(u64::from(dimensions))
             .and_then(|coordinates| usize::try_from(coordinates).ok())
-            .filter(|&coordinates| coordinates <= isize::MAX as usize / size_of::<f64>())
+            .filter(|&coordinates| rows.try_reserve_exact(coordinates).is_ok())
             .ok_or_else(|| {
                 Error::refused(
                     "count of points",
@@ -109,7 +110,7 @@ impl<'a> Points<'a> {
                     count,
                 )
             })?;
-        let mut rows = vec![0.0; coordinates];
+        rows.resize(coordinates, 0.0);
         set.fill(indices.start, 0..dimensions, &mut rows);
         Self::checked(Cow::Owned(rows), dimensions as usize)
     }

@@ -3,10 +3,13 @@
 use super::Points;
 use crate::reduce;
 
-/// The least Euclidean distance between two of the points; infinite for a single one.
+/// The least Euclidean distance between two of the points, `min_(i < j) |x_i - x_j|`; infinite for a single
+/// one.[^johnson]
 ///
 /// Large is good for designs of experiments and for the look of a picture, and says little about integrals. Time
 /// between `O(d n log n)` and `O(d n^2)`: only points that are close along the first dimension are compared.
+///
+/// Below, 0.1 and 0.9 are 0.8 apart, and 0.1 + 1 - 0.9 = 0.2 around the torus.
 ///
 /// ```
 /// use estimand::discrepancy::{Points, minimum_distance, toroidal_minimum_distance};
@@ -16,6 +19,9 @@ use crate::reduce;
 /// assert!((toroidal_minimum_distance(&points) - 0.2).abs() < 1e-15);
 /// # Ok::<(), estimand::Error>(())
 /// ```
+///
+/// [^johnson]: Johnson, Mark; Moore, Leslie; Ylvisaker, Donald (1990). *Minimax and Maximin Distance Designs*.
+///     <https://doi.org/10.1016/0378-3758(90)90122-B>
 pub fn minimum_distance(points: &Points<'_>) -> f64 {
     least(points, false)
 }
@@ -23,7 +29,16 @@ pub fn minimum_distance(points: &Points<'_>) -> f64 {
 /// The least Euclidean distance between two of the points on the torus, where 0 and 1 are the same; infinite for a
 /// single point.
 ///
-/// See [`minimum_distance`].
+/// `min_(i < j) (sum_k min(t_k, 1 - t_k)^2)^(1/2)` with `t_k = |x_ik - x_jk|`. See [`minimum_distance`].
+///
+/// ```
+/// use estimand::discrepancy::{Points, toroidal_minimum_distance};
+///
+/// // Across the corner: 1/8 along each dimension.
+/// let points = Points::from_rows(&[0.0, 0.0, 0.875, 0.875], 2)?;
+/// assert_eq!(toroidal_minimum_distance(&points), 0.03125_f64.sqrt());
+/// # Ok::<(), estimand::Error>(())
+/// ```
 pub fn toroidal_minimum_distance(points: &Points<'_>) -> f64 {
     least(points, true)
 }

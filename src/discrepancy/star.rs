@@ -1,5 +1,6 @@
 //! The star discrepancy, and what kind of number an answer is.
 
+mod cell;
 mod cells;
 mod grid;
 mod line;

@@ -335,7 +335,7 @@ mod tests {
                 let paired = Tiles::new::<Star>(&points)
                     .sum::<Star>(|_, pair| pair)
                     .value();
-                // A single point can have moved to the corner, where both are exactly 0.
+                // Both are 0 if all points have a coordinate 1.
                 let off = (divided - paired).abs();
                 assert!(
                     off <= 1e-15 * paired,

@@ -1,6 +1,7 @@
 //! Branch and bound over cells of corners: exact values and certified bounds in any dimension.
 
 use super::Boundary;
+use super::cell::{Cell, Undecided};
 use super::grid::Grid;
 use super::separable::Separable;
 use crate::reduce;
@@ -34,6 +35,10 @@ pub(super) struct Found {
 /// A cell is the set of corners between two. Some points are inside for all of them, some for none; the rest is
 /// undecided, along one or several dimensions. A cell is halved until no corner in it can be better than the best
 /// known; where no point is undecided along two dimensions, [`Separable`] finds the best corner at once.
+///
+/// For `n` points in a fixed dimension `d` this takes `O(n^(1 + d/2))` steps, whatever the points: each job begins with the
+/// [rule](Rule) that is fast in practice, for which nothing is proved, and if it has not ended after `n^(1 + d/2)` steps begins
+/// anew with the one for which this is proved. The number of jobs is bounded by a constant.
 pub(super) fn search(grid: &Grid, lower: f64, gap: f64, limit: u64) -> Found {
     let mut found = Found {
         lower,
@@ -42,7 +47,7 @@ pub(super) fn search(grid: &Grid, lower: f64, gap: f64, limit: u64) -> Found {
         complete: true,
         work: 0,
     };
-    let mut frontier = Search::new(grid, lower, gap, u64::MAX);
+    let mut frontier = Search::new(grid, lower, gap, limit);
     let mut cells = vec![Cell::all(grid)];
     while !cells.is_empty() && cells.len() < JOBS {
         cells = cells
@@ -52,20 +57,31 @@ pub(super) fn search(grid: &Grid, lower: f64, gap: f64, limit: u64) -> Found {
             .collect();
     }
     found.take(&frontier);
+    let trial = trial(grid);
     cells.sort_by(|a, b| b.bound.total_cmp(&a.bound));
     for wave in cells.chunks(WAVE) {
         let left = limit.saturating_sub(found.work) / wave.len() as u64;
         let lower = found.lower;
         let searches = reduce::each(wave.len() as u64, |job| {
             let cell = &wave[usize::try_from(job).expect("a cell is in memory")];
-            let mut search = Search::new(grid, lower, gap, left);
+            let mut search = Search::new(grid, lower, gap, left.min(trial));
             search.run(cell);
+            if !search.complete && trial < left {
+                search.retry(cell, left);
+            }
             search
         });
         searches.iter().for_each(|search| found.take(search));
     }
     found.upper = found.upper.max(found.lower);
     found
+}
+
+/// Steps that a job may take by the rule for which nothing is proved: `n^(1 + d/2)`.
+fn trial(grid: &Grid) -> u64 {
+    let power = u32::try_from(grid.dimensions() + 2).expect("few dimensions");
+    let squared = (grid.count() as u128).saturating_pow(power);
+    u64::try_from(squared.isqrt()).expect("the root of 128 bits has 64")
 }
 
 impl Found {
@@ -80,59 +96,29 @@ impl Found {
     }
 }
 
-/// The corners from `low` to `high`, both included.
-struct Cell {
-    low: Vec<u32>,
-    high: Vec<u32>,
-    /// Points inside for all corners.
-    sure: u32,
-    undecided: Vec<Undecided>,
-    /// No excess in the cell is above this one.
-    bound: f64,
-}
-
-/// A point that is inside for some corners of a cell and not for others.
-#[derive(Clone, Copy)]
-struct Undecided {
-    point: u32,
-    /// The dimensions along which that is so.
-    along: u64,
-}
-
-impl Cell {
-    fn all(grid: &Grid) -> Self {
-        let dimensions = grid.dimensions();
-        let low = vec![grid.first(); dimensions];
-        let high: Vec<u32> = (0..dimensions).map(|j| grid.last(j)).collect();
-        let mut cell = Self {
-            low,
-            high,
-            sure: 0,
-            undecided: Vec::new(),
-            bound: 1.0,
-        };
-        let count = u32::try_from(grid.count()).expect("fewer than 2^32 points");
-        for point in 0..count {
-            let row = grid.row(point);
-            if (0..dimensions).any(|j| row[j] >= cell.high[j]) {
-                continue;
-            }
-            let along = (0..dimensions)
-                .filter(|&j| row[j] >= cell.low[j])
-                .fold(0, |along, j| along | 1 << j);
-            if along == 0 {
-                cell.sure += 1;
-            } else {
-                cell.undecided.push(Undecided { point, along });
-            }
-        }
-        cell
-    }
+/// Along which dimension a cell is halved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Rule {
+    /// The one along which most of the points are undecided that are so along another one as well.
+    Busiest,
+    /// The partition of Dobkin, Eppstein and Mitchell:[^dobkin] the first one along which more than `s = sqrt n` points
+    /// are undecided, or a point that is so along an earlier one as well.
+    ///
+    /// A halving decides the point at which it is made, and shares the others undecided along its dimension between the halves,
+    /// as evenly as can be. So under one cell that is done with along the dimensions before `j`, counted from 0, there are at
+    /// most `j s` halvings for the points undecided along those as well, and `2 n / (s + 1)` for their number: at most
+    /// `1 + (j + 2) (s + 1)` cells done with along `j`. Under the first cell this makes `O(n^(d/2))` cells. Each takes
+    /// `O(n)` steps, and so does the separable programme, with at most `d s` undecided points.
+    ///
+    /// [^dobkin]: Dobkin, David; Eppstein, David; Mitchell, Don (1996). *Computing the Discrepancy with Applications to
+    ///     Supersampling Patterns*. <https://doi.org/10.1145/234535.234536>
+    First,
 }
 
 /// A search of one cell, depth first.
 struct Search<'a> {
     grid: &'a Grid,
+    rule: Rule,
     gap: f64,
     limit: u64,
     work: u64,
@@ -161,6 +147,7 @@ impl<'a> Search<'a> {
     fn new(grid: &'a Grid, lower: f64, gap: f64, limit: u64) -> Self {
         Self {
             grid,
+            rule: Rule::Busiest,
             gap,
             limit,
             work: 0,
@@ -180,6 +167,17 @@ impl<'a> Search<'a> {
         self.stack.extend_from_slice(&cell.undecided);
         let (mut low, mut high) = (cell.low.clone(), cell.high.clone());
         self.descend(&mut low, &mut high, cell.sure, 0);
+    }
+
+    /// Searches a cell once more by the rule for which the number of steps is bounded.
+    fn retry(&mut self, cell: &Cell, limit: u64) {
+        let upper = core::mem::replace(&mut self.upper, f64::NEG_INFINITY);
+        self.rule = Rule::First;
+        self.limit = limit;
+        self.complete = true;
+        self.run(cell);
+        // Both are bounds of all excesses in the cell, but for those found.
+        self.upper = self.upper.min(upper);
     }
 
     /// The two halves of a cell, of which those are left out that need no search.
@@ -285,6 +283,22 @@ impl<'a> Search<'a> {
             self.complete &= hopeless;
             return None;
         }
+        let dimension = match self.rule {
+            Rule::Busiest => self.pivots_of_busiest(low.len(), first),
+            Rule::First => self.pivots_of_first(low.len(), first),
+        };
+        let Some(dimension) = dimension else {
+            self.solve(low, high, sure, first);
+            return None;
+        };
+        // The median of the points in question: it is decided along this dimension in both halves.
+        let middle = self.pivots.len() / 2;
+        let (_, &mut index, _) = self.pivots.select_nth_unstable(middle);
+        Some(Cut { dimension, index })
+    }
+
+    /// The dimension by [`Rule::Busiest`], and the ranks along it of the points in question.
+    fn pivots_of_busiest(&mut self, dimensions: usize, first: usize) -> Option<usize> {
         self.crossing.fill(0);
         for &Undecided { along, .. } in &self.stack[first..] {
             if !along.is_power_of_two() {
@@ -295,24 +309,33 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        let dimension = (0..low.len())
-            .max_by_key(|&j| self.crossing[j])
-            .expect("there is a dimension");
-        if self.crossing[dimension] == 0 {
-            self.solve(low, high, sure, first);
-            return None;
-        }
-        // The median of the points in question: it is decided along this dimension in both halves.
-        let bit = 1 << dimension;
+        let dimension = (0..dimensions).max_by_key(|&j| self.crossing[j])?;
+        self.collect(dimension, first, |along| !along.is_power_of_two());
+        (!self.pivots.is_empty()).then_some(dimension)
+    }
+
+    /// The dimension by [`Rule::First`], and the ranks along it of the points in question.
+    fn pivots_of_first(&mut self, dimensions: usize, first: usize) -> Option<usize> {
+        let most = self.grid.count().isqrt();
+        (0..dimensions).find(|&dimension| {
+            let earlier = (1 << dimension) - 1;
+            self.collect(dimension, first, |along| along & earlier != 0);
+            if self.pivots.is_empty() {
+                self.collect(dimension, first, |_| true);
+                return self.pivots.len() > most;
+            }
+            true
+        })
+    }
+
+    /// The ranks along a dimension of those points undecided along it whose dimensions are as asked for.
+    fn collect(&mut self, dimension: usize, first: usize, asked: impl Fn(u64) -> bool) {
         self.pivots.clear();
         for &Undecided { point, along } in &self.stack[first..] {
-            if along & bit != 0 && !along.is_power_of_two() {
+            if along & 1 << dimension != 0 && asked(along) {
                 self.pivots.push(self.grid.rank(point, dimension));
             }
         }
-        let middle = self.pivots.len() / 2;
-        let (_, &mut index, _) = self.pivots.select_nth_unstable(middle);
-        Some(Cut { dimension, index })
     }
 
     fn solve(&mut self, low: &[u32], high: &[u32], sure: u32, first: usize) {
@@ -327,6 +350,75 @@ impl<'a> Search<'a> {
         if best.excess > self.lower {
             self.lower = best.excess;
             self.corner = Some(self.separable.corner(best));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::discrepancy::Points;
+    use crate::points::{Halton, Independent, PointSet};
+
+    /// All corners by one rule, none left aside.
+    fn unpruned(grid: &Grid, rule: Rule) -> Search<'_> {
+        let mut search = Search::new(grid, f64::NEG_INFINITY, f64::NEG_INFINITY, u64::MAX);
+        search.rule = rule;
+        search.run(&Cell::all(grid));
+        search
+    }
+
+    fn grids(set: &impl PointSet, count: u64, dimensions: u32) -> [Grid; 2] {
+        let points = Points::from_set(set, 0..count, dimensions).unwrap();
+        [Boundary::Open, Boundary::Closed].map(|kind| Grid::new(&points, kind))
+    }
+
+    #[test]
+    fn both_rules_find_the_same() {
+        for (count, dimensions) in [(1, 3), (40, 3), (24, 4), (12, 5)] {
+            for seed in 0..10 {
+                for grid in grids(&Independent::new(seed), count, dimensions) {
+                    let lower = unpruned(&grid, Rule::Busiest).lower;
+                    assert_eq!(unpruned(&grid, Rule::First).lower, lower);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_second_try_completes_what_the_first_left() {
+        let [grid, _] = grids(&Independent::new(1), 60, 4);
+        let lower = unpruned(&grid, Rule::Busiest).lower;
+        let mut search = Search::new(&grid, 0.0, 0.0, 1000);
+        search.run(&Cell::all(&grid));
+        assert!(!search.complete);
+        search.retry(&Cell::all(&grid), u64::MAX);
+        assert!(search.complete);
+        assert_eq!(search.lower, lower);
+    }
+
+    #[test]
+    fn without_pruning_the_steps_are_those_of_the_proof() {
+        for dimensions in [3, 4] {
+            let halton = Halton::new(dimensions).unwrap();
+            let counts = [16, 32, 64, 128];
+            for count in &counts[..if dimensions == 3 { 4 } else { 3 }] {
+                let sets = [
+                    grids(&halton, *count, dimensions),
+                    grids(&Independent::new(1), *count, dimensions),
+                ];
+                for grid in sets.iter().flatten() {
+                    // Halvings, all at most the cells done with, and the steps of each cell.
+                    let (n, d) = (*count as f64, f64::from(dimensions));
+                    let s = n.sqrt().floor();
+                    let cells: f64 = (0..dimensions)
+                        .map(|j| 1.0 + (f64::from(j) + 2.0) * (s + 1.0))
+                        .product();
+                    let steps = 2.0 * cells * (n + d) + cells * (d * s).powi(2) / 2.0;
+                    let work = unpruned(grid, Rule::First).work as f64;
+                    assert!(work <= steps, "{dimensions} {count}: {work} {steps}");
+                }
+            }
         }
     }
 }

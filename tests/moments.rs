@@ -139,7 +139,7 @@ fn spread_too_small_for_its_squares_is_not_taken_for_none() {
     }
     let f = cube(|[x]| {
         if x < 0.3 {
-            0.0
+            0.0_f64
         } else if x < 0.6 {
             1e-200
         } else {

@@ -1,7 +1,7 @@
 """Writes the golden points in points/ that tests/exact.rs compares with, by independent programs.
 
-    python -m venv /tmp/points && /tmp/points/bin/pip install -r reference/requirements-points.txt
-    /tmp/points/bin/python reference/points.py
+    python -m venv venv && venv/bin/pip install -r reference/requirements-points.txt
+    venv/bin/python reference/points.py
 
 Every file is one line of column numbers (the dimensions, counted from 0), then one line for each point:
 its index, and its coordinates with 17 significant digits.

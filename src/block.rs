@@ -76,7 +76,9 @@ impl<V: Value> Block<V> {
         });
         let range = self.high.zip(self.low, |high, low| high - low);
         let _ = range.zip(self.squares, |range, squares| {
-            ordinary &= range == 0.0 || ORDINARY.contains(&squares);
+            // NaN among equal values is in the squares alone, spread too small for its squares in the range alone.
+            let constant = range == 0.0 && squares == 0.0;
+            ordinary &= constant || ORDINARY.contains(&squares);
             range
         });
         ordinary.then(|| Piece {

@@ -61,6 +61,24 @@ fn the_error_names_the_point_and_carries_the_estimate_so_far() {
 }
 
 #[test]
+fn a_bad_value_among_equal_ones_is_seen() {
+    let points = Independent::new(4);
+    for value in [f64::NAN, f64::INFINITY] {
+        for index in [0, 1, 500, 1023] {
+            let bad = points.coordinate(index, 0);
+            let f = cube(|[x]| if x == bad { value } else { 1.0 });
+            let stopped = Average::new(&points, 1024)
+                .estimate(&f)
+                .expect_err("one is not finite");
+            assert!(
+                matches!(stopped.reason, Error::NonFinite { index: named, .. } if named == index),
+                "{value} at {index}: {stopped}"
+            );
+        }
+    }
+}
+
+#[test]
 fn the_first_of_several_is_named() {
     let points = Independent::new(4);
     let (early, late) = (points.coordinate(3000, 0), points.coordinate(9000, 0));

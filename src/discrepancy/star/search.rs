@@ -20,7 +20,7 @@ use crate::{Error, hash, reduce};
 ///   dimensions is solved by the dynamic programme of Dobkin, Eppstein and Mitchell;[^dobkin] others are cut until
 ///   they are of that kind, or hold nothing better than the best corner known. Where the first rule for cuts does not get
 ///   there soon, theirs takes over: `O(n^(1 + d/2))` for a fixed `d`, whatever the points. The constant grows with `d`
-///   as fast as `2^d d!`, at most; what is pruned makes it far less as a rule. The problem is NP-hard in the dimension, so
+///   about as fast as `2^d (d + 1)!`, at most; what is pruned makes it far less as a rule. The problem is NP-hard in the dimension, so
 ///   that this ends only for few points or few dimensions: see [`measure`](Self::measure).
 /// - Out of reach of that, a walk of threshold accepting.[^gnewuch] It gives a lower bound, often the value itself, and
 ///   never knows.

@@ -47,6 +47,8 @@ mod frame;
 mod geometry;
 pub mod image;
 pub mod light;
+#[cfg(feature = "simd")]
+mod packet;
 mod radiance;
 mod ray;
 mod render;

@@ -1,13 +1,15 @@
 //! All shapes of a scene, and which of them a ray meets.
 
+mod kind;
 mod sweep;
 mod tree;
 
 use super::Shading;
 use super::ray::{Ray, Surface};
-use super::shape::{Primitive, Shape};
+use super::shape::{Flat, Primitive, Shape};
 
-use sweep::Sweep;
+pub(in crate::path) use kind::{Kind, axis};
+pub(in crate::path) use sweep::Sweep;
 use tree::Tree;
 
 /// The shapes of a scene, and a way to find them.
@@ -68,6 +70,30 @@ impl Geometry {
     #[inline]
     pub(in crate::path) fn shading(&self, hit: &Hit) -> Shading {
         self.shapes[hit.shape].shading(&hit.surface)
+    }
+
+    /// The shapes, if they are few.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn few(&self) -> Option<(&[Primitive], &Sweep)> {
+        match &self.search {
+            Search::Sweep(sweep) => Some((&self.shapes, sweep)),
+            Search::Tree(_) => None,
+        }
+    }
+
+    /// Whether a flat shape can be in the way between two points of the scene.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn divides(&self, flat: &Flat) -> bool {
+        kind::divides(flat, &self.shapes)
+    }
+
+    /// Whether any shape is in the way from one point of the scene to another, at `limit`.
+    #[inline]
+    pub(in crate::path) fn divided(&self, ray: &Ray, limit: f32) -> bool {
+        match &self.search {
+            Search::Sweep(sweep) => sweep.divided(ray, limit),
+            Search::Tree(tree) => tree.occluded(&self.shapes, ray, limit),
+        }
     }
 
     /// Whether the ray meets any shape nearer than `limit`.

@@ -4,9 +4,9 @@ use glam::{Vec3, Vec3A};
 
 use super::Ray;
 use super::bsdf::Bsdf;
+use super::frame::single;
 use super::light::{Environment, Light};
 use super::scene::Scene;
-use crate::integrands::{Heuristic, Survival};
 use crate::{Error, Sampler};
 
 /// Which paths of light are followed.
@@ -14,8 +14,8 @@ use crate::{Error, Sampler};
 /// By default all: paths end by Russian roulette, without bias, from their fifth segment on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Paths {
-    longest: u32,
-    roulette_from: u32,
+    pub(in crate::path) longest: u32,
+    pub(in crate::path) roulette_from: u32,
 }
 
 impl Default for Paths {
@@ -110,18 +110,16 @@ impl Paths {
             throughput *= next.weight;
             eta *= next.eta;
             if segment >= self.roulette_from {
-                let carried = f64::from(throughput.max_element() * (eta * eta));
-                // A black path is common, and an error for each would be slow. NaN goes on, to be seen.
+                let carried = throughput.max_element() * (eta * eta);
+                // NaN goes on, to be seen.
                 if carried <= 0.0 {
                     break;
                 }
-                let survival = Survival::new(carried.min(0.95)).ok();
-                let Some(weight) = survival.and_then(|survival| survival.play(u.next_1d())) else {
+                let survival = carried.min(0.95);
+                if single(u.next_1d()) >= survival {
                     break;
-                };
-                #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-                let weight = weight as f32;
-                throughput *= weight;
+                }
+                throughput *= 1.0 / survival;
             }
             density = next.density;
             ray = Ray {
@@ -137,7 +135,9 @@ impl Paths {
 /// power heuristic. The density of a direction without alternative is infinite, its weight 1.
 #[inline]
 fn power(own: f32, other: f32) -> f32 {
-    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-    let weight = Heuristic::Power.weight(own.into(), &[other.into()]) as f32;
-    weight
+    if !(own > 0.0) {
+        return 0.0;
+    }
+    let ratio = if own == other { 1.0 } else { other / own };
+    1.0 / (1.0 + ratio * ratio)
 }

@@ -38,6 +38,13 @@ impl From<Dielectric> for Material {
 impl Bsdf for Material {
     type Detail = ();
 
+    fn as_lambertian(&self) -> Option<&Lambertian> {
+        match self {
+            Self::Lambertian(law) => Some(law),
+            Self::Mirror(_) | Self::Dielectric(_) => None,
+        }
+    }
+
     #[inline]
     fn is_delta(&self) -> bool {
         match self {

@@ -93,6 +93,7 @@
 //! | `serde` | saving and restoring estimates | `serde` |
 //! | `sobol-full` | Sobol' points in up to 21201 dimensions, not 1024 | 1.6 MB of tables |
 //! | `path` | the path tracer | `glam`, `obvhs`, `exr`, `image` |
+//! | `report` | pages, plots and files of a study | `serde`, `serde_json`, `csv`, `base64` |
 //!
 //! Without features the crate depends on `rand` alone.
 
@@ -121,6 +122,8 @@ pub mod integrands;
 #[cfg(feature = "path")]
 pub mod path;
 pub mod points;
+#[cfg(feature = "report")]
+pub mod report;
 pub mod warp;
 
 pub use error::{Error, Incomplete};

@@ -46,6 +46,7 @@ mod frame;
 mod geometry;
 pub mod image;
 pub mod light;
+mod pictures;
 mod radiance;
 mod ray;
 mod render;
@@ -55,6 +56,7 @@ pub mod sensor;
 pub mod shape;
 
 pub use image::Image;
+pub use pictures::Pictures;
 pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
 pub use render::{Pixel, Unfinished, View};

@@ -131,7 +131,7 @@ fn spot(q: &mut Query<'_>) -> Result<Spot, SceneError> {
     }
     let cutoff_angle = q.positive("cutoff_angle", 20.0)?;
     let beam_width = q.number("beam_width", 0.75 * cutoff_angle)?;
-    if !(cutoff_angle < 180.0) || !(beam_width >= 0.0 && beam_width <= cutoff_angle) {
+    if !(cutoff_angle < 180.0 && beam_width >= 0.0 && beam_width <= cutoff_angle) {
         return Err(q.error(format_args!(
             "`cutoff_angle` must be in (0, 180) and `beam_width` between 0 and it; they are {cutoff_angle} and {beam_width}"
         )));

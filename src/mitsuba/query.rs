@@ -82,8 +82,8 @@ impl<'a> Query<'a> {
     }
 
     /// Questions to a child.
-    pub(super) fn enter(&self, child: Child<'_>) -> Result<Query<'a>, SceneError> {
-        Query::new(self.context, child.index, self.levels + 1)
+    pub(super) fn enter(&self, child: Child<'_>) -> Result<Self, SceneError> {
+        Self::new(self.context, child.index, self.levels + 1)
     }
 
     pub(super) fn plugin(&self) -> &'a str {

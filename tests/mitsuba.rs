@@ -213,7 +213,7 @@ fn old_files_are_upgraded() {
     folder.write("image.png", "");
     folder.write(
         "scene.xml",
-        &format!(
+        format!(
             r#"<scene version="0.6.0">{SENSOR}<shape type="sphere">
             <transform name="toWorld"><scale value="2"/></transform>
             <bsdf type="diffuse"><texture type="bitmap" name="diffuseReflectance">

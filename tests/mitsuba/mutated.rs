@@ -49,7 +49,8 @@ struct Dice {
 impl Dice {
     fn below(&mut self, bound: usize) -> usize {
         self.drawn += 1;
-        (hash::mix(self.seed ^ hash::mix(self.drawn)) % bound.max(1) as u64) as usize
+        let word = hash::mix(self.seed ^ hash::mix(self.drawn));
+        usize::try_from(word % bound.max(1) as u64).expect("below a usize")
     }
 }
 

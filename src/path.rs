@@ -47,6 +47,7 @@ mod frame;
 mod geometry;
 pub mod image;
 pub mod light;
+mod pictures;
 mod radiance;
 mod ray;
 mod render;
@@ -57,6 +58,7 @@ mod shading;
 pub mod shape;
 
 pub use image::Image;
+pub use pictures::Pictures;
 pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
 pub use render::{Pixel, Unfinished, View};

@@ -100,7 +100,7 @@ impl<P: Profile> Separable<P> {
             let height = value(x).abs();
             if let Some(&Node { height: before, .. }) = nodes.last() {
                 table += 0.5 * (before + height) / NODES_F64;
-                integral += simpson(&value, x - 1.0 / NODES_F64, x);
+                integral += simpson(value, x - 1.0 / NODES_F64, x);
             }
             if !(height.is_finite() && integral.is_finite()) {
                 return Err(Error::refused("value of a filter", "finite", height));

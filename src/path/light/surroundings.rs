@@ -195,7 +195,10 @@ mod tests {
                 Background::Constant(Constant::new([1.0; 3]).unwrap()),
                 Vec3A::ZERO,
             ),
-            (Background::Sky(Box::new(sky)), Vec3A::new(0.5, 1.0, 2.0) * four_pi),
+            (
+                Background::Sky(Box::new(sky)),
+                Vec3A::new(0.5, 1.0, 2.0) * four_pi,
+            ),
         ] {
             let lights = Surroundings::new(sources.clone(), background).unwrap();
             let count: u32 = 1 << 16;

@@ -49,6 +49,7 @@ pub mod image;
 pub mod light;
 #[cfg(feature = "simd")]
 mod packet;
+mod pictures;
 mod radiance;
 mod ray;
 mod render;
@@ -59,6 +60,7 @@ mod shading;
 pub mod shape;
 
 pub use image::Image;
+pub use pictures::Pictures;
 pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
 pub use render::{Pixel, Unfinished, View};

@@ -6,8 +6,11 @@ mod tree;
 
 use super::Shading;
 use super::ray::{Ray, Surface};
-use super::shape::{Flat, Primitive, Shape};
+#[cfg(feature = "simd")]
+use super::shape::Flat;
+use super::shape::{Primitive, Shape};
 
+#[cfg(feature = "simd")]
 pub(in crate::path) use kind::{Kind, axis};
 pub(in crate::path) use sweep::Sweep;
 use tree::Tree;

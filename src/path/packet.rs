@@ -118,7 +118,7 @@ impl Packet {
 mod tests {
     use glam::Vec3;
 
-    use crate::hash::{hash, unit};
+    use crate::hash::{hash, unit_f32};
     use crate::path::bsdf::{Bsdf, Lambertian};
     use crate::path::light::{AreaLights, Constant, Environment, Light, NoEnvironment, NoLight};
     use crate::path::sensor::Pinhole;
@@ -174,7 +174,7 @@ mod tests {
         let mut state = 0;
         let mut random = || {
             state += 1;
-            unit(hash(11, state)) as f32
+            unit_f32(hash(11, state))
         };
         let mut objects = vec![Object::new(
             cuboid(

@@ -41,7 +41,6 @@ pub(super) struct Mask<S: Simd> {
 /// The number of a shape a lane.
 #[derive(Clone, Copy)]
 pub(super) struct Index<S: Simd> {
-    simd: S,
     lanes: S::u32s,
 }
 
@@ -49,7 +48,6 @@ impl<S: Simd> Index<S> {
     #[inline(always)]
     pub(super) fn splat(simd: S, number: u32) -> Self {
         Self {
-            simd,
             lanes: simd.splat_u32s(number),
         }
     }
@@ -176,8 +174,9 @@ impl<S: Simd> Mask<S> {
     /// `yes` where it holds, `no` elsewhere.
     #[inline(always)]
     pub(super) fn index(self, yes: Index<S>, no: Index<S>) -> Index<S> {
-        let lanes = self.simd.select_u32s(self.lanes, yes.lanes, no.lanes);
-        Index { lanes, ..yes }
+        Index {
+            lanes: self.simd.select_u32s(self.lanes, yes.lanes, no.lanes),
+        }
     }
 
     /// 1 where it holds, 0 elsewhere, to be read lane by lane.

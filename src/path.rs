@@ -27,7 +27,7 @@
 //! |---|---|
 //! | [`View`] | scene, camera and paths: what a picture is taken of |
 //! | [`Scene`], [`Object`] | shapes, and what they do to light |
-//! | [`shape`], [`bsdf`], [`light`], [`sensor`] | one kind of shape, scattering, source and camera a file |
+//! | [`shape`], [`bsdf`], [`light`], [`sensor`], [`filter`] | one kind of shape, scattering, source, camera and filter a file |
 //! | [`Paths::radiance`] | the rendering equation |
 //! | [`Image`] | pictures, their errors, their files |
 //! | [`scenes`] | the Cornell box and others, as `reference/scenes` has them for Mitsuba |
@@ -42,20 +42,25 @@
 
 pub mod bsdf;
 mod color;
+pub mod filter;
 mod frame;
 mod geometry;
 pub mod image;
 pub mod light;
+mod pictures;
 mod radiance;
 mod ray;
 mod render;
 mod scene;
 pub mod scenes;
 pub mod sensor;
+mod shading;
 pub mod shape;
 
 pub use image::Image;
+pub use pictures::Pictures;
 pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
 pub use render::{Pixel, Unfinished, View};
 pub use scene::{Object, Scene, Segment, Vertex};
+pub use shading::{Detail, Shading};

@@ -19,6 +19,7 @@ mod mirror;
 
 use glam::Vec3A;
 
+use super::{Detail, Surface};
 use crate::Sampler;
 
 pub use dielectric::Dielectric;
@@ -29,18 +30,27 @@ pub use mirror::Mirror;
 /// A bidirectional scattering distribution function.
 ///
 /// All directions have length 1 and point away from the surface: `out` to where the light is seen from, `into` to
-/// where it comes from. The normal is that of the outer side.
+/// where it comes from. The normals are those of the outer side.
 pub trait Bsdf: Sync {
-    /// Whether light is scattered to single directions only, so that [`evaluate`](Self::evaluate) is zero and no
-    /// light is worth sampling.
+    /// What the law needs to know of a surface beyond point and normal: `()`, or [`Shading`](super::Shading) if it
+    /// looks up textures or heeds interpolated normals. What no law of a scene needs is not computed.
+    type Detail: Detail;
+
+    /// Whether light is scattered to single directions only, wherever the surface is hit, so that
+    /// [`evaluate`](Self::evaluate) is zero and no light is worth sampling.
     fn is_delta(&self) -> bool;
 
     /// The value for a pair of directions, times the cosine of `into`, and the density with which
-    /// [`sample`](Self::sample) draws `into`.
-    fn evaluate(&self, normal: Vec3A, out: Vec3A, into: Vec3A) -> Scattering;
+    /// [`sample`](Self::sample) draws `into`. Single directions do not count.
+    fn evaluate(&self, at: &Surface<Self::Detail>, out: Vec3A, into: Vec3A) -> Scattering;
 
     /// A direction, drawn from the coordinates of `u`; `None` where nothing is scattered.
-    fn sample<S: Sampler>(&self, normal: Vec3A, out: Vec3A, u: &mut S) -> Option<Scattered>;
+    fn sample<S: Sampler>(
+        &self,
+        at: &Surface<Self::Detail>,
+        out: Vec3A,
+        u: &mut S,
+    ) -> Option<Scattered>;
 }
 
 /// What a [`Bsdf`] does for a pair of directions.

@@ -4,6 +4,7 @@ use glam::Vec3A;
 
 use super::mirror::reflect;
 use super::{Bsdf, Scattered, Scattering};
+use crate::path::Surface;
 use crate::path::frame::single;
 use crate::{Error, Sampler};
 
@@ -82,18 +83,21 @@ fn refraction(cosine: f32, eta: f32) -> Refraction {
 }
 
 impl Bsdf for Dielectric {
+    type Detail = ();
+
     #[inline]
     fn is_delta(&self) -> bool {
         true
     }
 
     #[inline]
-    fn evaluate(&self, _: Vec3A, _: Vec3A, _: Vec3A) -> Scattering {
+    fn evaluate(&self, _: &Surface, _: Vec3A, _: Vec3A) -> Scattering {
         Scattering::NONE
     }
 
     #[inline]
-    fn sample<S: Sampler>(&self, normal: Vec3A, out: Vec3A, u: &mut S) -> Option<Scattered> {
+    fn sample<S: Sampler>(&self, at: &Surface, out: Vec3A, u: &mut S) -> Option<Scattered> {
+        let normal = at.normal;
         let cosine = normal.dot(out);
         let side = 1.0_f32.copysign(cosine);
         let eta = if cosine > 0.0 {
@@ -169,13 +173,19 @@ mod tests {
         }
         let glass = Dielectric::new(1.5, 1.0).unwrap();
         for normal in [Vec3A::Z, Vec3A::NEG_Z, Vec3A::new(0.6, 0.0, 0.8)] {
+            let at = Surface {
+                point: Vec3A::ZERO,
+                normal,
+                margin: 0.0,
+                detail: (),
+            };
             let out = Vec3A::new(0.28, 0.0, 0.96);
-            let there = glass.sample(normal, out, &mut Last).unwrap();
+            let there = glass.sample(&at, out, &mut Last).unwrap();
             let sines = [out, there.direction].map(|v| normal.cross(v).length());
             assert!((sines[0] - there.eta * sines[1]).abs() < 1e-6);
             assert!(normal.dot(out) * normal.dot(there.direction) < 0.0);
             // The way back is the same way.
-            let back = glass.sample(normal, there.direction, &mut Last).unwrap();
+            let back = glass.sample(&at, there.direction, &mut Last).unwrap();
             assert!((back.direction - out).length() < 1e-6);
             assert!((back.weight * there.weight - Vec3A::ONE).length() < 1e-6);
         }

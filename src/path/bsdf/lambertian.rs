@@ -5,8 +5,8 @@ use core::f32::consts::FRAC_1_PI;
 use glam::Vec3A;
 
 use super::{Bsdf, Scattered, Scattering};
-use crate::path::color;
 use crate::path::frame::{Frame, cosine_density, cosine_hemisphere, singles};
+use crate::path::{Surface, color};
 use crate::{Error, Sampler};
 
 /// Ideally diffuse reflection on both sides: the function is `albedo / pi` where both directions are on the same
@@ -32,15 +32,17 @@ impl Lambertian {
 }
 
 impl Bsdf for Lambertian {
+    type Detail = ();
+
     #[inline]
     fn is_delta(&self) -> bool {
         false
     }
 
     #[inline]
-    fn evaluate(&self, normal: Vec3A, out: Vec3A, into: Vec3A) -> Scattering {
-        let cosine = normal.dot(into);
-        if cosine * normal.dot(out) <= 0.0 {
+    fn evaluate(&self, at: &Surface, out: Vec3A, into: Vec3A) -> Scattering {
+        let cosine = at.normal.dot(into);
+        if cosine * at.normal.dot(out) <= 0.0 {
             return Scattering::NONE;
         }
         Scattering {
@@ -50,9 +52,9 @@ impl Bsdf for Lambertian {
     }
 
     #[inline]
-    fn sample<S: Sampler>(&self, normal: Vec3A, out: Vec3A, u: &mut S) -> Option<Scattered> {
+    fn sample<S: Sampler>(&self, at: &Surface, out: Vec3A, u: &mut S) -> Option<Scattered> {
         let local = cosine_hemisphere(singles(u.next_2d()));
-        let normal = normal * 1.0_f32.copysign(normal.dot(out));
+        let normal = at.normal * 1.0_f32.copysign(at.normal.dot(out));
         (local.z > 0.0).then(|| Scattered {
             direction: Frame::around(normal).out(local),
             weight: self.albedo,

@@ -4,6 +4,7 @@ use glam::Vec3A;
 
 use super::{Bsdf, Dielectric, Lambertian, Mirror, Scattered, Scattering};
 use crate::Sampler;
+use crate::path::Surface;
 
 /// Any of the laws of this module, for scenes that mix them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +36,8 @@ impl From<Dielectric> for Material {
 }
 
 impl Bsdf for Material {
+    type Detail = ();
+
     #[inline]
     fn is_delta(&self) -> bool {
         match self {
@@ -45,20 +48,20 @@ impl Bsdf for Material {
     }
 
     #[inline]
-    fn evaluate(&self, normal: Vec3A, out: Vec3A, into: Vec3A) -> Scattering {
+    fn evaluate(&self, at: &Surface, out: Vec3A, into: Vec3A) -> Scattering {
         match self {
-            Self::Lambertian(law) => law.evaluate(normal, out, into),
-            Self::Mirror(law) => law.evaluate(normal, out, into),
-            Self::Dielectric(law) => law.evaluate(normal, out, into),
+            Self::Lambertian(law) => law.evaluate(at, out, into),
+            Self::Mirror(law) => law.evaluate(at, out, into),
+            Self::Dielectric(law) => law.evaluate(at, out, into),
         }
     }
 
     #[inline]
-    fn sample<S: Sampler>(&self, normal: Vec3A, out: Vec3A, u: &mut S) -> Option<Scattered> {
+    fn sample<S: Sampler>(&self, at: &Surface, out: Vec3A, u: &mut S) -> Option<Scattered> {
         match self {
-            Self::Lambertian(law) => law.sample(normal, out, u),
-            Self::Mirror(law) => law.sample(normal, out, u),
-            Self::Dielectric(law) => law.sample(normal, out, u),
+            Self::Lambertian(law) => law.sample(at, out, u),
+            Self::Mirror(law) => law.sample(at, out, u),
+            Self::Dielectric(law) => law.sample(at, out, u),
         }
     }
 }

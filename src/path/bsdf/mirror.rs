@@ -3,7 +3,7 @@
 use glam::Vec3A;
 
 use super::{Bsdf, Scattered, Scattering};
-use crate::path::color;
+use crate::path::{Surface, color};
 use crate::{Error, Sampler};
 
 /// An ideal mirror on the outer side; the inner side is black, as that of a conductor is.
@@ -34,20 +34,22 @@ pub(super) fn reflect(normal: Vec3A, out: Vec3A) -> Vec3A {
 }
 
 impl Bsdf for Mirror {
+    type Detail = ();
+
     #[inline]
     fn is_delta(&self) -> bool {
         true
     }
 
     #[inline]
-    fn evaluate(&self, _: Vec3A, _: Vec3A, _: Vec3A) -> Scattering {
+    fn evaluate(&self, _: &Surface, _: Vec3A, _: Vec3A) -> Scattering {
         Scattering::NONE
     }
 
     #[inline]
-    fn sample<S: Sampler>(&self, normal: Vec3A, out: Vec3A, _: &mut S) -> Option<Scattered> {
-        (normal.dot(out) > 0.0).then(|| Scattered {
-            direction: reflect(normal, out),
+    fn sample<S: Sampler>(&self, at: &Surface, out: Vec3A, _: &mut S) -> Option<Scattered> {
+        (at.normal.dot(out) > 0.0).then(|| Scattered {
+            direction: reflect(at.normal, out),
             weight: self.reflectance,
             density: f32::INFINITY,
             eta: 1.0,

@@ -38,7 +38,9 @@
 //!   errors, which scales and moves with the scene; two surfaces nearer to one another than about 1e-6 of
 //!   their coordinates are not told apart. A scene may be of any size between 1e-10 and 1e10.
 //! - Colour is linear red, green and blue. No media, no textures, no spectra.
-//! - Boxes around many shapes come from the crate `obvhs`; up to 48 shapes are swept over instead.
+//! - Boxes around many shapes come from the crate `obvhs`; up to 48 shapes are swept over instead. If they are flat and
+//!   scatter light ideally diffusely, and what is around them is constant, many paths are followed at once, with the same
+//!   result to the bit.
 
 pub mod bsdf;
 mod color;

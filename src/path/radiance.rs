@@ -4,9 +4,9 @@ use glam::{Vec3, Vec3A};
 
 use super::Ray;
 use super::bsdf::Bsdf;
-use super::frame::single;
 use super::light::{Environment, Light};
 use super::scene::Scene;
+use crate::integrands::Survival;
 use crate::{Error, Sampler};
 
 /// Which paths of light are followed.
@@ -110,16 +110,10 @@ impl Paths {
             throughput *= next.weight;
             eta *= next.eta;
             if segment >= self.roulette_from {
-                let carried = throughput.max_element() * (eta * eta);
-                // NaN goes on, to be seen.
-                if carried <= 0.0 {
+                let Some(weight) = play(throughput.max_element() * (eta * eta), u) else {
                     break;
-                }
-                let survival = carried.min(0.95);
-                if single(u.next_1d()) >= survival {
-                    break;
-                }
-                throughput *= 1.0 / survival;
+                };
+                throughput *= weight;
             }
             density = next.density;
             ray = Ray {
@@ -131,8 +125,22 @@ impl Paths {
     }
 }
 
+/// Russian roulette: the weight of a path that goes on, `None` for one that ends, from what the path still carries.
+#[inline]
+pub(in crate::path) fn play<S: Sampler>(carried: f32, u: &mut S) -> Option<f32> {
+    // A black path is common, and an error for each would be slow. NaN goes on, to be seen.
+    if carried <= 0.0 {
+        return None;
+    }
+    let survival = Survival::new(f64::from(carried).min(0.95)).ok()?;
+    let weight = survival.play(u.next_1d())?;
+    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+    Some(weight as f32)
+}
+
 /// The weight of a sample that was drawn with density `own`, where another technique has the density `other`: the
-/// power heuristic. The density of a direction without alternative is infinite, its weight 1.
+/// power heuristic, as [`Heuristic::Power`](crate::integrands::Heuristic::Power) has it, in `f32`. The density of a direction
+/// without alternative is infinite, its weight 1.
 #[inline]
 fn power(own: f32, other: f32) -> f32 {
     if !(own > 0.0) {

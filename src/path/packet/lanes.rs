@@ -340,7 +340,7 @@ impl<S: Simd> Vector<S> {
 
     #[inline(always)]
     pub(super) fn max_element(self) -> Real<S> {
-        self.x.max(self.y).max(self.z)
+        self.x.max(self.z).max(self.y.max(self.z))
     }
 }
 

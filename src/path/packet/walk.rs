@@ -9,6 +9,7 @@ use super::lanes::{Mask, Real, Row, Vector, WIDEST};
 use super::{Packet, Start};
 use crate::Sampler;
 use crate::path::frame::single;
+use crate::path::radiance::play;
 use crate::path::{Paths, gamma};
 
 /// The paths of some points.
@@ -225,13 +226,9 @@ impl<U: Sampler, C: Fn(&mut U) -> Start> Walk<'_, U, C> {
         throughput *= albedo;
         let playing = walking & segment.ge(Real::splat(simd, self.paths.roulette_from as f32));
         if playing.any() {
-            let carried = throughput.max_element();
-            let black = playing & carried.le(zero);
-            let playing = playing & !black;
-            let survival = carried.min(Real::splat(simd, 0.95));
-            let survives = self.draw_one(simd, state, playing).lt(survival);
-            walking = walking & !black & (!playing | survives);
-            throughput = playing.choose(throughput * (one / survival), throughput);
+            let weight = self.play(simd, state, playing, throughput.max_element());
+            walking = walking & (!playing | weight.gt(zero));
+            throughput = playing.choose(throughput * weight, throughput);
         }
         let normal = here.normal * one.copysign(facing);
         let next = around(normal, local);
@@ -282,17 +279,25 @@ impl<U: Sampler, C: Fn(&mut U) -> Start> Walk<'_, U, C> {
         ]
     }
 
-    /// A coordinate for Russian roulette.
+    /// Russian roulette: the weights of the paths that go on, zero for those that end.
     #[inline(always)]
-    fn draw_one<S: Simd>(&mut self, simd: S, state: &State, playing: Mask<S>) -> Real<S> {
+    fn play<S: Simd>(
+        &mut self,
+        simd: S,
+        state: &State,
+        playing: Mask<S>,
+        carried: Real<S>,
+    ) -> Real<S> {
         let plays = playing.row(simd);
-        let mut u = Row::<f32>::ZERO;
+        let mut weights = Row::<f32>::ZERO;
+        carried.store(&mut weights);
         for lane in 0..S::F32_LANES {
             if plays.0[lane] > 0.0 {
-                u.0[lane] = single(self.points[state.point[lane]].next_1d());
+                let u = &mut self.points[state.point[lane]];
+                weights.0[lane] = play(weights.0[lane], u).unwrap_or(0.0);
             }
         }
-        Real::load(simd, &u)
+        Real::load(simd, &weights)
     }
 }
 

@@ -4,6 +4,8 @@
 
 #[path = "mitsuba/files.rs"]
 mod files;
+#[path = "mitsuba/meshes.rs"]
+mod meshes;
 #[path = "mitsuba/mutated.rs"]
 mod mutated;
 

@@ -3,7 +3,7 @@
 //! | part | coordinates per vertex |
 //! |---|---|
 //! | [`NoLight`] | 0 |
-//! | [`AreaLights`] | 2, however many there are |
+//! | [`AreaLights`], [`LightTree`] | 2, however many there are |
 //! | [`NoEnvironment`], [`Constant`] | 0 |
 //! | [`Sky`] | 2 |
 //! | [`Surroundings`]: [`PointLight`], [`SpotLight`], [`DirectionalLight`] and a background | 0 to 3 |
@@ -20,6 +20,7 @@ mod point;
 mod sky;
 mod spot;
 mod surroundings;
+mod tree;
 
 use glam::Vec3A;
 
@@ -34,6 +35,7 @@ pub use point::PointLight;
 pub use sky::Sky;
 pub use spot::SpotLight;
 pub use surroundings::{Background, Source, Surroundings};
+pub use tree::LightTree;
 
 /// All sources of light that are shapes of the scene.
 pub trait Light: Sync + Sized {

@@ -46,6 +46,7 @@ mod frame;
 mod geometry;
 pub mod image;
 pub mod light;
+mod place;
 mod radiance;
 mod ray;
 mod render;
@@ -53,8 +54,10 @@ mod scene;
 pub mod scenes;
 pub mod sensor;
 pub mod shape;
+pub mod texture;
 
 pub use image::Image;
+pub use place::{Place, Spot};
 pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
 pub use render::{Pixel, Unfinished, View};

@@ -33,6 +33,37 @@ impl Frame {
         }
     }
 
+    /// The basis whose third vector is `normal`, of length 1, and whose first one is as near as can be to `tangent`; any
+    /// such basis where the tangent is parallel to the normal or none.
+    #[inline]
+    pub(in crate::path) fn along(normal: Vec3A, tangent: Vec3A) -> Self {
+        let across = tangent - normal * normal.dot(tangent);
+        let Some(tangent) = across.try_normalize() else {
+            return Self::around(normal);
+        };
+        Self {
+            tangent,
+            bitangent: normal.cross(tangent),
+            normal,
+        }
+    }
+
+    /// The third vector of the basis.
+    #[inline]
+    pub(in crate::path) fn normal(&self) -> Vec3A {
+        self.normal
+    }
+
+    /// The coordinates of a vector in this basis.
+    #[inline]
+    pub(in crate::path) fn local(&self, vector: Vec3A) -> Vec3A {
+        Vec3A::new(
+            self.tangent.dot(vector),
+            self.bitangent.dot(vector),
+            self.normal.dot(vector),
+        )
+    }
+
     /// The vector with the given coordinates in this basis.
     #[inline]
     pub(in crate::path) fn out(&self, local: Vec3A) -> Vec3A {

@@ -14,6 +14,7 @@ mod sets;
 
 use estimand::estimators::{Bounded, Strata, Vegas};
 use estimand::path::bsdf::{Bsdf, Dielectric, Lambertian, Material, Mirror};
+use estimand::path::filter::BoxFilter;
 use estimand::path::light::{AreaLights, Constant, NoEnvironment, NoLight};
 use estimand::path::sensor::Pinhole;
 use estimand::path::shape::{Flat, Sphere};
@@ -43,6 +44,7 @@ fn under_a_sky<B: Bsdf>(
     View {
         scene: Scene::new(objects, Constant::new([1.0, 0.5, 0.25]).unwrap()).unwrap(),
         sensor: camera([0.0, 0.0, -6.0 * scale], [0.0; 3]),
+        filter: BoxFilter,
         paths: Paths::default(),
     }
 }
@@ -210,11 +212,13 @@ fn a_square_light_has_its_form_factor() {
             scene: Scene::new(objects, NoEnvironment).unwrap(),
             sensor: Pinhole::look_at([5.0, 1.0, 0.0], [0.0; 3], [0.0, 1.0, 0.0], 1e-4, 1.0)
                 .unwrap(),
+            filter: BoxFilter,
             paths: Paths::default(),
         };
         let pixel = Pixel {
             scene: &view.scene,
             sensor: &view.sensor,
+            filter: &view.filter,
             paths: view.paths,
             position: [0, 0],
             size: [1, 1],

@@ -3,6 +3,7 @@
 mod sweep;
 mod tree;
 
+use super::Shading;
 use super::ray::{Ray, Surface};
 use super::shape::{Primitive, Shape};
 
@@ -61,6 +62,12 @@ impl Geometry {
         }?;
         let surface = self.shapes[shape].surface(ray, distance);
         Some(Hit { shape, surface })
+    }
+
+    /// The parametrisation of a shape at a point of it.
+    #[inline]
+    pub(in crate::path) fn shading(&self, hit: &Hit) -> Shading {
+        self.shapes[hit.shape].shading(&hit.surface)
     }
 
     /// Whether the ray meets any shape nearer than `limit`.

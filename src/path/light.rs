@@ -8,15 +8,16 @@
 //!
 //! # Writing your own
 //!
-//! Implement [`Light`] for sources that are shapes of the scene, or [`Environment`] for what is around it.
+//! Implement [`Light`] for sources that are shapes of the scene, or [`Environment`] for all that are not: what is
+//! around it, and points. At every vertex each of the two draws one sample.
 
 mod area;
 mod environment;
 
 use glam::Vec3A;
 
-use super::Surface;
 use super::shape::Primitive;
+use super::{Segment, Shading, Surface};
 use crate::{Error, Sampler};
 
 pub use area::AreaLights;
@@ -31,12 +32,19 @@ pub trait Light: Sync + Sized {
     /// [`Error::Refused`] for a number of emitters that this type is not made for.
     fn new(emitters: Vec<Emitter>) -> Result<Self, Error>;
 
-    /// A point of the lights, drawn from the coordinates of `u` so as to light the point `from` well.
-    fn sample<S: Sampler>(&self, from: Vec3A, u: &mut S) -> Option<Illumination>;
+    /// The way to a point of the lights, drawn from the coordinates of `u` so as to light the surface `from` well.
+    fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination>;
 
-    /// What the point of an emitter that a ray from `from` has hit emits towards it, and the density with which
-    /// [`sample`](Self::sample) would have drawn the point.
-    fn emitted(&self, emitter: u32, from: Vec3A, surface: &Surface) -> Emission;
+    /// What the point `surface` of an emitter that a ray from `from` has hit emits towards it, and the density with
+    /// which [`sample`](Self::sample) would have drawn the point. `shading` tells more of the point where that
+    /// matters.
+    fn emitted(
+        &self,
+        emitter: u32,
+        from: Vec3A,
+        surface: &Surface,
+        shading: impl FnOnce() -> Shading,
+    ) -> Emission;
 }
 
 /// A shape that emits light from its outer side, the same radiance from every point to every direction.
@@ -48,24 +56,34 @@ pub struct Emitter {
     pub radiance: Vec3A,
 }
 
-/// A point of a light that may be seen from another.
+/// Light that may arrive at a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Illumination {
-    /// The point.
-    pub surface: Surface,
-    /// The radiance that it emits towards the other.
-    pub radiance: Vec3A,
-    /// The density with which it was drawn, per solid angle seen from the other; positive.
+    /// The way to where it comes from.
+    pub way: Segment,
+    /// The radiance that comes along it, over the density with which it was drawn. Of a source without size: what takes
+    /// its place, the irradiance on a surface that faces it.
+    pub weight: Vec3A,
+    /// The density with which the way was drawn, per solid angle; positive. Infinite for a source without size, which
+    /// no ray can hit.
     pub density: f32,
 }
 
-/// What a point of an emitter does for another that sees it.
+/// What a source does for a point that sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emission {
     /// The radiance emitted towards it.
     pub radiance: Vec3A,
-    /// The density with which the point would have been drawn, per solid angle seen from the other.
+    /// The density with which the way to it would have been drawn, per solid angle; zero if it never is.
     pub density: f32,
+}
+
+impl Emission {
+    /// Nothing is emitted.
+    pub const NONE: Self = Self {
+        radiance: Vec3A::ZERO,
+        density: 0.0,
+    };
 }
 
 /// No shape emits light. Takes no memory, no time and no coordinate.
@@ -86,15 +104,12 @@ impl Light for NoLight {
     }
 
     #[inline]
-    fn sample<S: Sampler>(&self, _: Vec3A, _: &mut S) -> Option<Illumination> {
+    fn sample<D, S: Sampler>(&self, _: &Surface<D>, _: &mut S) -> Option<Illumination> {
         None
     }
 
     #[inline]
-    fn emitted(&self, _: u32, _: Vec3A, _: &Surface) -> Emission {
-        Emission {
-            radiance: Vec3A::ZERO,
-            density: 0.0,
-        }
+    fn emitted(&self, _: u32, _: Vec3A, _: &Surface, _: impl FnOnce() -> Shading) -> Emission {
+        Emission::NONE
     }
 }

@@ -2,13 +2,22 @@
 
 use glam::{Vec2, Vec3A};
 
-use super::frame::Frame;
+use super::{Detail, Frame, Shading, Surface};
 
 /// What a law of scattering knows of the point of a surface, in the frame that the law works in: its third
 /// axis is the shading normal.
 ///
 /// `()` is a place like any other: the laws that are the same everywhere need no more, and it costs nothing.
 pub trait Place: Copy {
+    /// What must be known of the surface to know the place.
+    type Detail: Detail;
+
+    /// The frame of laws of scattering at a point of a surface.
+    fn frame(at: &Surface<Self::Detail>) -> Frame;
+
+    /// The place that a point of a surface is, in that frame.
+    fn of(at: &Surface<Self::Detail>, frame: &Frame) -> Self;
+
     /// How the position changes with the texture coordinates `u` and `v`.
     fn derivatives(&self) -> [Vec3A; 2];
 
@@ -20,6 +29,16 @@ pub trait Place: Copy {
 }
 
 impl Place for () {
+    type Detail = ();
+
+    #[inline]
+    fn frame(at: &Surface) -> Frame {
+        Frame::around(at.normal)
+    }
+
+    #[inline]
+    fn of(_: &Surface, _: &Frame) -> Self {}
+
     #[inline]
     fn derivatives(&self) -> [Vec3A; 2] {
         [Vec3A::X, Vec3A::Y]
@@ -57,6 +76,23 @@ impl Spot {
 }
 
 impl Place for Spot {
+    type Detail = Shading;
+
+    #[inline]
+    fn frame(at: &Surface<Shading>) -> Frame {
+        Frame::along(at.detail.normal, at.detail.du)
+    }
+
+    #[inline]
+    fn of(at: &Surface<Shading>, frame: &Frame) -> Self {
+        let Shading { uv, du, dv, .. } = at.detail;
+        Self {
+            uv,
+            derivatives: [du, dv].map(|derivative| frame.local(derivative)),
+            outward: frame.local(at.normal),
+        }
+    }
+
     #[inline]
     fn derivatives(&self) -> [Vec3A; 2] {
         self.derivatives

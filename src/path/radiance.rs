@@ -2,10 +2,10 @@
 
 use glam::{Vec3, Vec3A};
 
+use super::Ray;
 use super::bsdf::Bsdf;
 use super::light::{Environment, Light};
-use super::scene::{Scene, Segment};
-use super::{Ray, Vertex};
+use super::scene::Scene;
 use crate::integrands::{Heuristic, Survival};
 use crate::{Error, Sampler};
 
@@ -54,9 +54,9 @@ impl Paths {
     /// The radiance that arrives at the origin of `ray` from its direction: an estimate, whose mean over the
     /// coordinates of `u` is the solution of the rendering equation.[^kajiya]
     ///
-    /// The coordinates are read in this order. At every surface: two for a point of the lights, unless the
-    /// scene has none or the surface scatters to single directions only; for the next direction as many as the law of
-    /// scattering draws; from the fifth segment on one for Russian roulette.
+    /// The coordinates are read in this order. At every surface: those of the [lights](Light) and those of the
+    /// [environment](Environment), unless the surface scatters to single directions only; for the next direction as
+    /// many as the law of scattering draws; from the fifth segment on one for Russian roulette.
     ///
     /// [^kajiya]: Kajiya, James (1986). *The Rendering Equation*. <https://doi.org/10.1145/15886.15902>
     #[inline]
@@ -73,37 +73,38 @@ impl Paths {
         let mut density = f32::INFINITY;
         let mut eta = 1.0;
         for segment in 1.. {
-            let Some(Vertex {
-                surface,
-                bsdf,
-                emitter,
-            }) = scene.meet(&ray)
-            else {
-                radiance += throughput * scene.environment().radiance(ray.direction);
+            let Some(vertex) = scene.meet(&ray) else {
+                let emission = scene.environment().emitted(ray.direction);
+                radiance += throughput * emission.radiance * power(density, emission.density);
                 break;
             };
             // Emitted light, met by a direction that was drawn at the surface before.
-            if let Some(emitter) = emitter {
-                let emission = scene.lights().emitted(emitter, ray.origin, &surface);
+            if let Some(emitter) = vertex.emitter {
+                let shading = || vertex.shading();
+                let emission = scene
+                    .lights()
+                    .emitted(emitter, ray.origin, vertex.place(), shading);
                 radiance += throughput * emission.radiance * power(density, emission.density);
             }
             if segment >= self.longest {
                 break;
             }
-            // Next-event estimation: light met by drawing a point of the lights.
+            let (surface, bsdf) = (&vertex.surface, vertex.bsdf);
             let out = -ray.direction;
-            if !bsdf.is_delta()
-                && let Some(light) = scene.lights().sample(surface.point, u)
-                && let Some(way) = Segment::between(&surface, &light.surface)
-            {
-                let scattering = bsdf.evaluate(surface.normal, out, way.ray.direction);
-                if scattering.density > 0.0 && !scene.occluded(&way) {
-                    let weight = power(light.density, scattering.density) / light.density;
-                    radiance += throughput * scattering.value * light.radiance * weight;
+            // Next-event estimation: light met by drawing a point of the lights, and one of what is around.
+            if !bsdf.is_delta() {
+                let area = scene.lights().sample(surface, u);
+                let around = scene.environment().sample(surface, u);
+                for light in [area, around].into_iter().flatten() {
+                    let scattering = bsdf.evaluate(surface, out, light.way.ray.direction);
+                    if scattering.density > 0.0 && !scene.occluded(&light.way) {
+                        let weight = power(light.density, scattering.density);
+                        radiance += throughput * scattering.value * light.weight * weight;
+                    }
                 }
             }
             // All other light, by drawing a direction.
-            let Some(next) = bsdf.sample(surface.normal, out, u) else {
+            let Some(next) = bsdf.sample(surface, out, u) else {
                 break;
             };
             throughput *= next.weight;

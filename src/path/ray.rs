@@ -20,8 +20,11 @@ impl Ray {
 }
 
 /// A point on a surface, known up to rounding, and how to leave it.
+///
+/// `D` is what a [law of scattering](super::bsdf::Bsdf::Detail) needs to know beyond that; nothing unless it is
+/// named.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surface {
+pub struct Surface<D = ()> {
     /// The point, as near to the surface as rounding allows.
     pub point: Vec3A,
     /// The normal of length 1, on the outer side of the shape.
@@ -29,9 +32,24 @@ pub struct Surface {
     /// A bound of the error of the point along the normal, and of the error with which a ray finds the surface
     /// again.
     pub margin: f32,
+    /// What else is known of it.
+    pub detail: D,
 }
 
 impl Surface {
+    /// The same point with more known of it.
+    #[inline]
+    pub fn with<D>(self, detail: D) -> Surface<D> {
+        Surface {
+            point: self.point,
+            normal: self.normal,
+            margin: self.margin,
+            detail,
+        }
+    }
+}
+
+impl<D> Surface<D> {
     /// Where a ray that leaves the surface in `direction` must start so as not to meet it again: a
     /// [`margin`](Self::margin) off the surface, on the side that the ray goes to.
     ///

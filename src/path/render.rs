@@ -6,6 +6,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use glam::{DVec3, Vec3};
 
 use super::bsdf::Bsdf;
+use super::filter::{BoxFilter, Filter};
 use super::image::{Image, Row};
 use super::light::{Environment, Light};
 use super::sensor::Sensor;
@@ -13,14 +14,16 @@ use super::{Paths, Scene};
 use crate::points::pixel;
 use crate::{Error, Estimate, Estimator, Incomplete, Integrand, Sampler, each};
 
-/// The mean radiance over a pixel, as an integral over the unit cube: two coordinates for the point of the pixel,
-/// those of the [sensor](Sensor::ray), those of the [path](Paths::radiance).
+/// The mean radiance around a pixel, as an integral over the unit cube: two coordinates for the point of the
+/// [film](Filter::sample), those of the [sensor](Sensor::ray), those of the [path](Paths::radiance).
 #[derive(Debug)]
-pub struct Pixel<'a, B, L, E, C> {
+pub struct Pixel<'a, B, L, E, C, F = BoxFilter> {
     /// What is seen.
     pub scene: &'a Scene<B, L, E>,
     /// The camera.
     pub sensor: &'a C,
+    /// What the pixel sees of the film.
+    pub filter: &'a F,
     /// Which paths of light are followed.
     pub paths: Paths,
     /// The column and the row, from the upper left corner of the picture.
@@ -32,21 +35,17 @@ pub struct Pixel<'a, B, L, E, C> {
 /// Coordinates computed ahead: those of the film and of two surfaces. Few paths end before.
 const AHEAD: u32 = 10;
 
-impl<B: Bsdf, L: Light, E: Environment, C: Sensor> Integrand for Pixel<'_, B, L, E, C>
-where
-    B: Sync,
+impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
+    for Pixel<'_, B, L, E, C, F>
 {
     type Value = Vec3;
 
     #[inline]
     fn evaluate<S: Sampler>(&self, u: &mut S) -> Vec3 {
-        let [x, y] = u.next_2d();
-        let film = [
-            (f64::from(self.position[0]) + x) / f64::from(self.size[0]),
-            (f64::from(self.position[1]) + y) / f64::from(self.size[1]),
-        ];
+        let seen = self.filter.sample(self.position, self.size, u.next_2d());
+        let film = core::array::from_fn(|axis| seen.point[axis] / f64::from(self.size[axis]));
         let ray = self.sensor.ray(film, u);
-        self.paths.radiance(self.scene, ray, u)
+        self.paths.radiance(self.scene, ray, u) * seen.weight
     }
 
     fn dimensions(&self) -> u32 {
@@ -56,11 +55,13 @@ where
 
 /// What to render, and from where.
 #[derive(Debug)]
-pub struct View<B, L, E, C> {
+pub struct View<B, L, E, C, F = BoxFilter> {
     /// What is seen.
     pub scene: Scene<B, L, E>,
     /// The camera.
     pub sensor: C,
+    /// What a pixel sees of the film.
+    pub filter: F,
     /// Which paths of light are followed.
     pub paths: Paths,
 }
@@ -111,7 +112,7 @@ struct Stopped {
     incomplete: Incomplete<DVec3>,
 }
 
-impl<B: Bsdf, L: Light, E: Environment, C: Sensor> View<B, L, E, C> {
+impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F> {
     /// The picture, of `size[0]` by `size[1]` pixels: for every pixel the estimate of the estimator that `estimator`
     /// makes from the pixel's seed, which is [`pixel::seed`]`([x, y], seed)`. So neighbours are independent of
     /// one another, and anybody can compute a pixel again, or go on with it:
@@ -128,6 +129,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor> View<B, L, E, C> {
     /// let again = Pixel {
     ///     scene: &view.scene,
     ///     sensor: &view.sensor,
+    ///     filter: &view.filter,
     ///     paths: view.paths,
     ///     position: [x, y],
     ///     size,
@@ -140,8 +142,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor> View<B, L, E, C> {
     /// The film of the sensor is stretched over the picture, whatever its size: for square pixels the camera's
     /// aspect must be `size[0] / size[1]`.
     ///
-    /// The box filter of one pixel: nothing of a pixel is seen in its neighbours. The bits are the same
-    /// for any number of threads.
+    /// Pixels are independent of one another, whatever the filter. The bits are the same for any number of threads.
     ///
     /// # Errors
     ///
@@ -190,6 +191,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor> View<B, L, E, C> {
                 let integrand = Pixel {
                     scene: &self.scene,
                     sensor: &self.sensor,
+                    filter: &self.filter,
                     paths: self.paths,
                     position,
                     size,

@@ -4,10 +4,11 @@ use glam::Vec3A;
 
 use super::bsdf::{Bsdf, Material};
 use super::color;
-use super::geometry::Geometry;
+use super::geometry::{Geometry, Hit};
 use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment};
 use super::ray::{Ray, Surface, gamma};
 use super::shape::Primitive;
+use super::{Detail, Shading};
 use crate::Error;
 
 /// Shapes that scatter light alike, and perhaps emit it.
@@ -76,13 +77,29 @@ const DARK: u32 = u32::MAX;
 
 /// The point of a scene that a ray has met.
 #[derive(Clone, Copy, Debug)]
-pub struct Vertex<'a, B> {
-    /// The point of the surface.
-    pub surface: Surface,
+pub struct Vertex<'a, B: Bsdf> {
+    /// The point of the surface, with what its law of scattering needs to know.
+    pub surface: Surface<B::Detail>,
     /// How light is scattered there.
     pub bsdf: &'a B,
     /// Which emitter it belongs to, if any.
     pub emitter: Option<u32>,
+    geometry: &'a Geometry,
+    hit: Hit,
+}
+
+impl<B: Bsdf> Vertex<'_, B> {
+    /// The parametrisation of the surface, whether its law of scattering needs it or not.
+    #[inline]
+    pub fn shading(&self) -> Shading {
+        self.geometry.shading(&self.hit)
+    }
+
+    /// The point of the surface alone.
+    #[inline]
+    pub fn place(&self) -> &Surface {
+        &self.hit.surface
+    }
 }
 
 impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
@@ -124,19 +141,24 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
     }
 }
 
-impl<B, L, E> Scene<B, L, E> {
+impl<B: Bsdf, L, E> Scene<B, L, E> {
     /// Where the ray first meets a surface.
     #[inline]
     pub fn meet(&self, ray: &Ray) -> Option<Vertex<'_, B>> {
         let hit = self.geometry.nearest(ray)?;
         let owner = self.owners[hit.shape];
+        let detail = Detail::from_shading(|| self.geometry.shading(&hit));
         Some(Vertex {
-            surface: hit.surface,
+            surface: hit.surface.with(detail),
             bsdf: &self.bsdfs[owner.bsdf as usize],
             emitter: (owner.emitter != DARK).then_some(owner.emitter),
+            geometry: &self.geometry,
+            hit,
         })
     }
+}
 
+impl<B, L, E> Scene<B, L, E> {
     /// The shapes that emit light.
     #[inline]
     pub fn lights(&self) -> &L {
@@ -156,22 +178,45 @@ impl<B, L, E> Scene<B, L, E> {
     }
 }
 
-/// The way from one surface to another.
+/// The way from one surface to another, or to what is no surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
     /// The ray from a margin off the one surface.
     pub ray: Ray,
-    /// How far it is to a margin off the other, less the rounding error of a distance.
+    /// How far it is to a margin off the other, less the rounding error of a distance; infinite where there is no other
+    /// end.
     pub length: f32,
 }
 
 impl Segment {
     /// The way between two surfaces; `None` where they are not told apart.
     #[inline]
-    pub fn between(here: &Surface, there: &Surface) -> Option<Self> {
+    pub fn between<D>(here: &Surface<D>, there: &Surface) -> Option<Self> {
         let toward = there.point - here.point;
-        let origin = here.leave(toward);
-        let way = there.leave(-toward) - origin;
+        Self::joining(here.leave(toward), there.leave(-toward))
+    }
+
+    /// The way from a surface to a point off all surfaces; `None` where they are not told apart.
+    #[inline]
+    pub fn to_point<D>(here: &Surface<D>, there: Vec3A) -> Option<Self> {
+        Self::joining(here.leave(there - here.point), there)
+    }
+
+    /// The way from a surface in a direction of length 1, without end.
+    #[inline]
+    pub fn along<D>(here: &Surface<D>, direction: Vec3A) -> Self {
+        Self {
+            ray: Ray {
+                origin: here.leave(direction),
+                direction,
+            },
+            length: f32::INFINITY,
+        }
+    }
+
+    #[inline]
+    fn joining(origin: Vec3A, end: Vec3A) -> Option<Self> {
+        let way = end - origin;
         let length = way.length();
         (length > 0.0).then(|| Self {
             ray: Ray {

@@ -15,7 +15,7 @@ mod sphere;
 
 use glam::Vec3A;
 
-use super::{Ray, Surface};
+use super::{Ray, Shading, Surface};
 
 pub use cuboid::cuboid;
 pub use flat::Flat;
@@ -31,6 +31,9 @@ pub trait Shape {
 
     /// The point of the surface at a `distance` that [`intersect`](Self::intersect) has returned for the ray.
     fn surface(&self, ray: &Ray, distance: f32) -> Surface;
+
+    /// The parametrisation of the surface at a point of it.
+    fn shading(&self, surface: &Surface) -> Shading;
 
     /// The area of the surface.
     fn area(&self) -> f32;
@@ -88,6 +91,13 @@ impl Shape for Primitive {
         match self {
             Self::Flat(flat) => flat.surface(ray, distance),
             Self::Sphere(sphere) => sphere.surface(ray, distance),
+        }
+    }
+
+    fn shading(&self, surface: &Surface) -> Shading {
+        match self {
+            Self::Flat(flat) => flat.shading(surface),
+            Self::Sphere(sphere) => sphere.shading(surface),
         }
     }
 

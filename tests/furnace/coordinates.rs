@@ -2,6 +2,7 @@
 
 use estimand::hash::hash;
 use estimand::path::bsdf::{Bsdf, Dielectric, Lambertian, Material, Mirror};
+use estimand::path::filter::BoxFilter;
 use estimand::path::light::{AreaLights, Environment, Light, NoEnvironment};
 use estimand::path::sensor::Pinhole;
 use estimand::path::shape::{Flat, Sphere, cuboid};
@@ -28,6 +29,7 @@ fn counts<B: Bsdf, L: Light, E: Environment>(
     let pixel = Pixel {
         scene: &view.scene,
         sensor: &view.sensor,
+        filter: &view.filter,
         paths: view.paths.longest(segments).unwrap(),
         position: [0, 0],
         size: [1, 1],
@@ -68,6 +70,7 @@ fn absent_parts_draw_no_coordinates() {
         View::<_, AreaLights, _, _> {
             scene: Scene::new(objects, NoEnvironment).unwrap(),
             sensor: camera([0.0, 0.0, -6.0], [0.0; 3]),
+            filter: BoxFilter,
             paths: Paths::default(),
         }
     };

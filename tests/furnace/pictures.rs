@@ -1,6 +1,8 @@
 //! What is kept of the estimates of a picture, also where one of them has to stop; and what is refused.
 
 use estimand::path::bsdf::{Dielectric, Lambertian};
+use estimand::path::filter::BoxFilter;
+use estimand::path::light::Emission;
 use estimand::path::light::{AreaLights, NoEnvironment, NoLight};
 use estimand::path::sensor::{Pinhole, Sensor};
 use estimand::path::shape::{Flat, Sphere};
@@ -38,6 +40,7 @@ fn parts_must_fit_their_types() {
     let view = View {
         scene: nothing.unwrap(),
         sensor: camera([1.0; 3], [0.0; 3]),
+        filter: BoxFilter,
         paths: Paths::default(),
     };
     let picture: Image = view
@@ -128,6 +131,7 @@ fn a_pixel_can_be_computed_again() {
     let again = Pixel {
         scene: &view.scene,
         sensor: &view.sensor,
+        filter: &view.filter,
         paths: view.paths,
         position,
         size,
@@ -157,8 +161,11 @@ impl<F: Fn([f64; 2]) -> bool + Sync> Sensor for Broken<F> {
 struct Sky;
 
 impl estimand::path::light::Environment for Sky {
-    fn radiance(&self, direction: Vec3A) -> Vec3A {
-        Vec3A::splat(direction.z)
+    fn emitted(&self, direction: Vec3A) -> Emission {
+        Emission {
+            radiance: Vec3A::splat(direction.z),
+            density: 0.0,
+        }
     }
 }
 
@@ -166,6 +173,7 @@ fn broken<F: Fn([f64; 2]) -> bool + Sync>(film: F) -> View<Lambertian, NoLight, 
     View {
         scene: Scene::new(Vec::new(), Sky).unwrap(),
         sensor: Broken(film),
+        filter: BoxFilter,
         paths: Paths::default(),
     }
 }

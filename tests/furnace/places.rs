@@ -1,6 +1,7 @@
 //! Scenes of every size and at every place.
 
 use estimand::path::bsdf::Lambertian;
+use estimand::path::filter::BoxFilter;
 use estimand::path::light::{AreaLights, Constant, NoEnvironment, NoLight};
 use estimand::path::sensor::Pinhole;
 use estimand::path::shape::{Flat, Sphere, cuboid};
@@ -35,6 +36,7 @@ fn moved(
             1.0,
         )
         .unwrap(),
+        filter: BoxFilter,
         paths: Paths::default(),
     }
 }
@@ -109,6 +111,7 @@ fn a_closed_room_stays_dark() {
             let view = View::<_, NoLight, _, _> {
                 scene: Scene::new(vec![room], Constant::new([1e6; 3]).unwrap()).unwrap(),
                 sensor: sensor.unwrap(),
+                filter: BoxFilter,
                 paths: Paths::default(),
             };
             let picture = view

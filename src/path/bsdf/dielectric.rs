@@ -5,6 +5,7 @@ use glam::Vec3A;
 use super::fresnel::{self, refraction};
 use super::mirror::reflect;
 use super::{Bsdf, Law, Scattered, Scattering};
+use crate::path::Surface;
 use crate::path::frame::single;
 use crate::path::texture::{self, Parameter, Uniform};
 use crate::{Error, Sampler};
@@ -65,7 +66,7 @@ impl<P: Parameter> Default for Tint<P> {
     }
 }
 
-impl<P: Parameter> Dielectric<P> {
+impl Dielectric {
     /// The boundary with the index of refraction `inside`, on the inner side, and `outside`.
     ///
     /// # Errors
@@ -78,16 +79,20 @@ impl<P: Parameter> Dielectric<P> {
             tint: Tint::default(),
         })
     }
+}
 
+impl<P: Parameter> Dielectric<P> {
     /// The same, with some of the light left out.
-    pub fn tinted(mut self, tint: Tint<P>) -> Self {
-        self.tint = tint;
-        self
+    pub fn tinted<Q: Parameter>(self, tint: Tint<Q>) -> Dielectric<Q> {
+        Dielectric {
+            eta: self.eta,
+            tint,
+        }
     }
 
     /// A direction around any normal.
     #[inline]
-    fn scatter<S: Sampler>(
+    pub(super) fn scatter<S: Sampler>(
         &self,
         place: &P::Place,
         normal: Vec3A,
@@ -138,19 +143,21 @@ impl<P: Parameter> Law for Dielectric<P> {
 }
 
 impl<P: Parameter<Place = ()>> Bsdf for Dielectric<P> {
+    type Detail = ();
+
     #[inline]
     fn is_delta(&self) -> bool {
         true
     }
 
     #[inline]
-    fn evaluate(&self, _: Vec3A, _: Vec3A, _: Vec3A) -> Scattering {
+    fn evaluate(&self, _: &Surface, _: Vec3A, _: Vec3A) -> Scattering {
         Scattering::NONE
     }
 
     #[inline]
-    fn sample<S: Sampler>(&self, normal: Vec3A, out: Vec3A, u: &mut S) -> Option<Scattered> {
-        self.scatter(&(), normal, out, u)
+    fn sample<S: Sampler>(&self, at: &Surface, out: Vec3A, u: &mut S) -> Option<Scattered> {
+        self.scatter(&(), at.normal, out, u)
     }
 }
 
@@ -170,11 +177,11 @@ mod tests {
             (1.0, f32::NAN),
         ] {
             assert!(
-                Dielectric::<Uniform>::new(inside, outside).is_err(),
+                Dielectric::new(inside, outside).is_err(),
                 "{inside} in {outside}"
             );
         }
-        assert!(Dielectric::<Uniform>::new(4.0, 1.0).is_ok());
+        assert!(Dielectric::new(4.0, 1.0).is_ok());
     }
 
     #[test]
@@ -185,7 +192,7 @@ mod tests {
                 1.0 - f64::EPSILON
             }
         }
-        let glass: Dielectric = Dielectric::new(1.5, 1.0).unwrap();
+        let glass = Dielectric::new(1.5, 1.0).unwrap();
         for normal in [Vec3A::Z, Vec3A::NEG_Z, Vec3A::new(0.6, 0.0, 0.8)] {
             let out = Vec3A::new(0.28, 0.0, 0.96);
             let there = glass.scatter(&(), normal, out, &mut Last).unwrap();

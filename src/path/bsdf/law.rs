@@ -2,9 +2,9 @@
 
 use glam::Vec3A;
 
-use super::{Scattered, Scattering};
+use super::{Bsdf, Scattered, Scattering};
 use crate::Sampler;
-use crate::path::Place;
+use crate::path::{Frame, Place, Surface};
 
 /// A law of scattering in the frame of the surface, whose third axis is the shading normal, on the outer side.
 ///
@@ -27,6 +27,84 @@ pub trait Law: Sync {
 
     /// A direction, drawn from the coordinates of `u`; `None` where nothing is scattered.
     fn sample<S: Sampler>(&self, place: &Self::Place, out: Vec3A, u: &mut S) -> Option<Scattered>;
+}
+
+/// A [`Law`] as the law of a whole scene.
+///
+/// ```
+/// use estimand::path::bsdf::{Framed, Plastic};
+/// use estimand::path::light::{Constant, NoLight};
+/// use estimand::path::shape::Sphere;
+/// use estimand::path::texture::Uniform;
+/// use estimand::path::{Object, Scene};
+///
+/// let plastic = Plastic::new(Uniform::from([0.1, 0.3, 0.5]), 1.49, 1.0)?;
+/// let ball = Object::new([Sphere::new([0.0; 3], 1.0)?], plastic);
+/// let scene: Scene<Framed<Plastic>, NoLight, _> =
+///     Scene::new(vec![ball], Constant::new([1.0; 3])?)?;
+/// # Ok::<(), estimand::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Framed<L>(pub L);
+
+impl<L: Law> From<L> for Framed<L> {
+    fn from(law: L) -> Self {
+        Self(law)
+    }
+}
+
+impl<L: Law> Bsdf for Framed<L> {
+    type Detail = <L::Place as Place>::Detail;
+
+    #[inline]
+    fn is_delta(&self) -> bool {
+        self.0.is_delta()
+    }
+
+    #[inline]
+    fn evaluate(&self, at: &Surface<Self::Detail>, out: Vec3A, into: Vec3A) -> Scattering {
+        evaluate(&self.0, at, out, into)
+    }
+
+    #[inline]
+    fn sample<S: Sampler>(
+        &self,
+        at: &Surface<Self::Detail>,
+        out: Vec3A,
+        u: &mut S,
+    ) -> Option<Scattered> {
+        sample(&self.0, at, out, u)
+    }
+}
+
+/// What `law` says of directions that are given in the world.
+#[inline]
+pub(super) fn evaluate<L: Law>(
+    law: &L,
+    at: &Surface<<L::Place as Place>::Detail>,
+    out: Vec3A,
+    into: Vec3A,
+) -> Scattering {
+    let frame: Frame = L::Place::frame(at);
+    let place = L::Place::of(at, &frame);
+    law.evaluate(&place, frame.local(out), frame.local(into))
+}
+
+/// What `law` draws, in the world.
+#[inline]
+pub(super) fn sample<L: Law, S: Sampler>(
+    law: &L,
+    at: &Surface<<L::Place as Place>::Detail>,
+    out: Vec3A,
+    u: &mut S,
+) -> Option<Scattered> {
+    let frame: Frame = L::Place::frame(at);
+    let place = L::Place::of(at, &frame);
+    let scattered = law.sample(&place, frame.local(out), u)?;
+    Some(Scattered {
+        direction: frame.out(scattered.direction).normalize(),
+        ..scattered
+    })
 }
 
 /// `direction` mirrored in the plane of the surface.

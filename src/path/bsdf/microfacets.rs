@@ -76,7 +76,7 @@ impl<P: Parameter> Roughness<P> {
 }
 
 /// A surface of many small mirrors, seen in the frame of the whole.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Microfacets {
     distribution: Distribution,
     alpha: [f32; 2],
@@ -224,7 +224,13 @@ mod tests {
     fn normals_are_unit_vectors_above_the_surface_that_are_seen() {
         let tiny = f32::MIN_POSITIVE;
         for distribution in BOTH {
-            for alpha in [[0.0, 0.0], [1e-4, 1e-4], [0.01, 1.0], [1.0, 1.0], [5.0, 5.0]] {
+            for alpha in [
+                [0.0, 0.0],
+                [1e-4, 1e-4],
+                [0.01, 1.0],
+                [1.0, 1.0],
+                [5.0, 5.0],
+            ] {
                 let facets = Microfacets::new(distribution, alpha);
                 for cosine in [1.0_f32, 0.999_999_9, 0.5, 1e-3, 1e-7, 1e-30] {
                     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();

@@ -2,8 +2,9 @@
 
 use glam::Vec3A;
 
-use super::{Bsdf, Scattered, Scattering};
-use crate::path::color;
+use super::law::mirrored;
+use super::{Bsdf, Law, Scattered, Scattering};
+use crate::path::{Surface, color};
 use crate::{Error, Sampler};
 
 /// An ideal mirror on the outer side; the inner side is black, as that of a conductor is.
@@ -33,24 +34,41 @@ pub(super) fn reflect(normal: Vec3A, out: Vec3A) -> Vec3A {
     (normal * (2.0 * normal.dot(out)) - out).normalize()
 }
 
-impl Bsdf for Mirror {
+impl Law for Mirror {
+    type Place = ();
+
     #[inline]
     fn is_delta(&self) -> bool {
         true
     }
 
     #[inline]
-    fn evaluate(&self, _: Vec3A, _: Vec3A, _: Vec3A) -> Scattering {
+    fn evaluate(&self, (): &(), _: Vec3A, _: Vec3A) -> Scattering {
         Scattering::NONE
     }
 
     #[inline]
-    fn sample<S: Sampler>(&self, normal: Vec3A, out: Vec3A, _: &mut S) -> Option<Scattered> {
-        (normal.dot(out) > 0.0).then(|| Scattered {
-            direction: reflect(normal, out),
-            weight: self.reflectance,
-            density: f32::INFINITY,
-            eta: 1.0,
-        })
+    fn sample<S: Sampler>(&self, (): &(), out: Vec3A, _: &mut S) -> Option<Scattered> {
+        (out.z > 0.0).then(|| Scattered::single(mirrored(out), self.reflectance))
+    }
+}
+
+impl Bsdf for Mirror {
+    type Detail = ();
+
+    #[inline]
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn evaluate(&self, _: &Surface, _: Vec3A, _: Vec3A) -> Scattering {
+        Scattering::NONE
+    }
+
+    #[inline]
+    fn sample<S: Sampler>(&self, at: &Surface, out: Vec3A, _: &mut S) -> Option<Scattered> {
+        (at.normal.dot(out) > 0.0)
+            .then(|| Scattered::single(reflect(at.normal, out), self.reflectance))
     }
 }

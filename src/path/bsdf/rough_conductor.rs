@@ -3,9 +3,9 @@
 use glam::Vec3A;
 
 use super::{Conductor, Law, Roughness, Scattered, Scattering};
+use crate::Sampler;
 use crate::path::frame::singles;
 use crate::path::texture::{Parameter, Uniform};
-use crate::{Error, Sampler};
 
 /// A rough metal: facets that are mirrors, of which those that others hide do not shine.[^cook] The inner side is black.
 ///

@@ -18,7 +18,7 @@ pub struct ThinDielectric<P = Uniform> {
     tint: Tint<P>,
 }
 
-impl<P: Parameter> ThinDielectric<P> {
+impl ThinDielectric {
     /// The pane with the index of refraction `inside`, on both sides of which it is `outside`.
     ///
     /// # Errors
@@ -30,11 +30,15 @@ impl<P: Parameter> ThinDielectric<P> {
             tint: Tint::default(),
         })
     }
+}
 
+impl<P: Parameter> ThinDielectric<P> {
     /// The same, with some of the light left out.
-    pub fn tinted(mut self, tint: Tint<P>) -> Self {
-        self.tint = tint;
-        self
+    pub fn tinted<Q: Parameter>(self, tint: Tint<Q>) -> ThinDielectric<Q> {
+        ThinDielectric {
+            eta: self.eta,
+            tint,
+        }
     }
 }
 

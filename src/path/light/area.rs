@@ -3,9 +3,9 @@
 use glam::Vec3A;
 
 use super::{Emission, Emitter, Illumination, Light};
-use crate::path::Surface;
 use crate::path::frame::singles;
 use crate::path::shape::Shape;
+use crate::path::{Segment, Shading, Surface};
 use crate::{Error, Sampler};
 
 /// Shapes that emit light from their outer sides.
@@ -79,22 +79,31 @@ impl Light for AreaLights {
     }
 
     #[inline]
-    fn sample<S: Sampler>(&self, from: Vec3A, u: &mut S) -> Option<Illumination> {
+    fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
         let [a, b] = u.next_2d();
         let (chosen, a) = self.choose(a);
         let Emitter { shape, radiance } = &self.emitters[chosen];
-        let surface = shape.sample(from, singles([a, b]));
-        let density = self.choices[chosen].times(shape.density(from, &surface));
-        let lit = surface.normal.dot(from - surface.point) > 0.0;
-        (lit && density > 0.0 && density < f32::MAX).then_some(Illumination {
-            surface,
-            radiance: *radiance,
+        let there = shape.sample(from.point, singles([a, b]));
+        let density = self.choices[chosen].times(shape.density(from.point, &there));
+        let lit = there.normal.dot(from.point - there.point) > 0.0;
+        if !(lit && density > 0.0 && density < f32::MAX) {
+            return None;
+        }
+        Some(Illumination {
+            way: Segment::between(from, &there)?,
+            weight: *radiance / density,
             density,
         })
     }
 
     #[inline]
-    fn emitted(&self, emitter: u32, from: Vec3A, surface: &Surface) -> Emission {
+    fn emitted(
+        &self,
+        emitter: u32,
+        from: Vec3A,
+        surface: &Surface,
+        _: impl FnOnce() -> Shading,
+    ) -> Emission {
         let Emitter { shape, radiance } = &self.emitters[emitter as usize];
         let lit = surface.normal.dot(from - surface.point) > 0.0;
         Emission {

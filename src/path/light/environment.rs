@@ -2,16 +2,24 @@
 
 use glam::Vec3A;
 
-use crate::Error;
-use crate::path::color;
+use super::{Emission, Illumination};
+use crate::path::{Surface, color};
+use crate::{Error, Sampler};
 
-/// The light that comes from outside, along the rays that leave the scene.
-///
-/// It is met by the directions that surfaces draw. For a constant one nothing does better: the light that a
-/// diffuse surface receives is then drawn in proportion to what it is worth, but for shadows.
+/// The light that no shape of the scene emits: what comes from outside, along the rays that leave the scene, and from
+/// points.
 pub trait Environment: Sync {
-    /// The radiance seen in `direction`, of length 1.
-    fn radiance(&self, direction: Vec3A) -> Vec3A;
+    /// The radiance seen in `direction`, of length 1, and the density with which [`sample`](Self::sample) draws that
+    /// direction.
+    fn emitted(&self, direction: Vec3A) -> Emission;
+
+    /// A way to the light, drawn from the coordinates of `u` so as to light the surface `from` well. Draws nothing, and
+    /// no coordinate, unless it is implemented: the light is then met by the directions that surfaces draw.
+    #[inline]
+    fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
+        let _ = (from, u);
+        None
+    }
 }
 
 /// Nothing is around the scene. Takes no memory, no time and no coordinate.
@@ -20,12 +28,14 @@ pub struct NoEnvironment;
 
 impl Environment for NoEnvironment {
     #[inline]
-    fn radiance(&self, _: Vec3A) -> Vec3A {
-        Vec3A::ZERO
+    fn emitted(&self, _: Vec3A) -> Emission {
+        Emission::NONE
     }
 }
 
-/// The same radiance from every direction. Draws no coordinate.
+/// The same radiance from every direction. Draws no coordinate: the directions that a surface draws meet it, and nothing
+/// does better. The light that a diffuse surface receives is then drawn in proportion to what it is worth, but for
+/// shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constant {
     radiance: Vec3A,
@@ -46,7 +56,10 @@ impl Constant {
 
 impl Environment for Constant {
     #[inline]
-    fn radiance(&self, _: Vec3A) -> Vec3A {
-        self.radiance
+    fn emitted(&self, _: Vec3A) -> Emission {
+        Emission {
+            radiance: self.radiance,
+            density: 0.0,
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::path::bsdf::{Bsdf, Dielectric, Lambertian, Material, Mirror};
+use crate::path::filter::BoxFilter;
 use crate::path::light::{AreaLights, NoEnvironment};
 use crate::path::sensor::Pinhole;
 use crate::path::shape::{Flat, Sphere};
@@ -75,6 +76,7 @@ fn view<B: Bsdf>(
             39.307_648_116_107,
             1.0,
         )?,
+        filter: BoxFilter,
         paths: Paths::default(),
     })
 }

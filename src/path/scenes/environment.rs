@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::path::bsdf::{Dielectric, Lambertian, Material, Mirror};
+use crate::path::filter::BoxFilter;
 use crate::path::light::{Constant, NoLight};
 use crate::path::sensor::Pinhole;
 use crate::path::shape::{Flat, Sphere, cuboid};
@@ -38,6 +39,7 @@ pub fn environment() -> View<Material, NoLight, Constant, Pinhole> {
     View {
         scene: scene().expect("the bodies are a valid scene"),
         sensor: sensor.expect("the camera is valid"),
+        filter: BoxFilter,
         paths: Paths::default(),
     }
 }

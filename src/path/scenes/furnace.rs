@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::path::bsdf::Lambertian;
+use crate::path::filter::BoxFilter;
 use crate::path::light::{AreaLights, NoEnvironment};
 use crate::path::sensor::Pinhole;
 use crate::path::shape::{Flat, Sphere, cuboid};
@@ -33,6 +34,7 @@ pub fn furnace() -> View<Lambertian, AreaLights, NoEnvironment, Pinhole> {
     View {
         scene: scene().expect("the furnace is a valid scene"),
         sensor: sensor.expect("the camera is valid"),
+        filter: BoxFilter,
         paths: Paths::default(),
     }
 }

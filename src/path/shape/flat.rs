@@ -1,9 +1,10 @@
 //! Triangles and parallelograms.
 
-use glam::Vec3A;
+use glam::{Vec2, Vec3A};
 
 use super::{Shape, density_of_area};
 use crate::Error;
+use crate::path::Shading;
 use crate::path::ray::{Ray, Surface, gamma};
 
 /// A triangle or a parallelogram: `corner + s * first_edge + t * second_edge` with `s, t` in `[0, 1]`, and
@@ -116,6 +117,7 @@ impl Flat {
             point: self.corner + (self.first_edge * s + self.second_edge * t),
             normal: self.normal,
             margin: self.margin,
+            detail: (),
         }
     }
 
@@ -184,6 +186,18 @@ impl Shape for Flat {
         // Past the slanted edge of a triangle: back towards the corner.
         let beyond = (self.slant * (s + t) + low_s.max(low_t)).max(1.0);
         self.at(s / beyond, t / beyond)
+    }
+
+    /// The texture coordinates are those along the edges.
+    #[inline]
+    fn shading(&self, surface: &Surface) -> Shading {
+        let inside = surface.point - self.corner;
+        Shading {
+            uv: Vec2::new(inside.dot(self.first_dual), inside.dot(self.second_dual)),
+            normal: self.normal,
+            du: self.first_edge,
+            dv: self.second_edge,
+        }
     }
 
     fn area(&self) -> f32 {

@@ -1,11 +1,12 @@
 //! Spheres.
 
-use core::f32::consts::PI;
+use core::f32::consts::{PI, TAU};
 
-use glam::Vec3A;
+use glam::{Vec2, Vec3A};
 
 use super::{Shape, density_of_area};
 use crate::Error;
+use crate::path::Shading;
 use crate::path::frame::{Frame, turn};
 use crate::path::ray::{Ray, Surface, gamma};
 
@@ -64,6 +65,7 @@ impl Sphere {
             point: self.center + normal * self.radius,
             normal,
             margin: gamma(8) * (normal.abs().dot(self.center.abs()) + 2.0 * self.radius),
+            detail: (),
         }
     }
 }
@@ -96,6 +98,27 @@ impl Shape for Sphere {
     #[inline]
     fn surface(&self, ray: &Ray, distance: f32) -> Surface {
         self.toward((ray.at(distance) - self.center).normalize())
+    }
+
+    /// The texture coordinates are the azimuth around the z axis and the angle from it, over `2 pi` and `pi`.
+    fn shading(&self, surface: &Surface) -> Shading {
+        let normal = surface.normal;
+        let azimuth = normal.y.atan2(normal.x);
+        let radius = normal.truncate().length();
+        let angle = radius.atan2(normal.z);
+        // The azimuth of a pole is that of the x axis.
+        let [cosine, sine] = if radius > 0.0 {
+            [normal.x / radius, normal.y / radius]
+        } else {
+            [1.0, 0.0]
+        };
+        let turns = azimuth / TAU;
+        Shading {
+            uv: Vec2::new(if turns < 0.0 { turns + 1.0 } else { turns }, angle / PI),
+            normal,
+            du: Vec3A::new(-sine, cosine, 0.0) * (TAU * radius * self.radius),
+            dv: Vec3A::new(normal.z * cosine, normal.z * sine, -radius) * (PI * self.radius),
+        }
     }
 
     fn area(&self) -> f32 {

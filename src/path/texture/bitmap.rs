@@ -223,7 +223,10 @@ impl Bitmap {
     #[inline]
     fn around(&self, point: Vec2) -> Around {
         let corner = point.floor();
-        #[expect(clippy::cast_possible_truncation, reason = "a whole number or saturated")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "a whole number or saturated"
+        )]
         let [column, row] = [corner.x as i64, corner.y as i64];
         let [width, height] = self.texels.size();
         Around {

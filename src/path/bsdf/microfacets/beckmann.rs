@@ -1,7 +1,5 @@
 //! Facets whose slopes are normally distributed.
 
-use core::f32::consts::PI;
-
 use glam::Vec3A;
 
 /// `1 / sqrt(pi)`.
@@ -40,7 +38,8 @@ pub(super) fn sample(v: Vec3A, u: [f32; 2]) -> Vec3A {
     let greatest = if last < 4.0 { libm::erff(last) } else { 1.0 };
     let tail = |x: f32| sine * FRAC_1_SQRT_PI * (-x * x).exp();
     let total = cosine * (1.0 + greatest) + tail(last);
-    let mut erf = greatest - (greatest + 1.0) * libm::erff((-a.ln()).sqrt());
+    let within = |erf: f32| erf.clamp(-1.0 + EDGE, greatest.min(1.0 - EDGE));
+    let mut erf = within(greatest - (greatest + 1.0) * libm::erff((-a.ln()).sqrt()));
     for _ in 0..3 {
         let x = inverse_erf(erf);
         let excess = cosine * (1.0 + erf) + tail(x) - a * total;
@@ -48,7 +47,7 @@ pub(super) fn sample(v: Vec3A, u: [f32; 2]) -> Vec3A {
         if !(slope > 0.0) {
             break;
         }
-        erf = (erf - excess / slope).clamp(-1.0 + EDGE, greatest.min(1.0 - EDGE));
+        erf = within(erf - excess / slope);
     }
     let (along, across) = (inverse_erf(erf), inverse_erf(2.0 * b - 1.0));
     let (x, y) = if sine > 0.0 {
@@ -98,6 +97,8 @@ fn inverse_erf(x: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use core::f32::consts::PI;
+
     use super::*;
 
     #[test]

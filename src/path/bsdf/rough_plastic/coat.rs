@@ -5,7 +5,7 @@ use glam::Vec3A;
 use crate::path::bsdf::fresnel::refraction;
 use crate::path::bsdf::microfacets::Microfacets;
 use crate::path::frame::singles;
-use crate::points::{Lattice, PointSet};
+use crate::points::{Folded, Lattice};
 use crate::{Average, Error, Estimator, cube};
 
 /// Cosines for which transmission is tabulated, from 0 to 1.
@@ -32,7 +32,11 @@ impl Coat {
                 let into = m * (cosine / eta - refraction.cosine) - out / eta;
                 let below = refraction.reflected < 1.0 && into.z < 0.0;
                 let unmasked = facets.unmasked(into.normalize(), m);
-                if below { unmasked * (1.0 - refraction.reflected) } else { 0.0 }
+                if below {
+                    unmasked * (1.0 - refraction.reflected)
+                } else {
+                    0.0
+                }
             })
         })?;
         let returned = table(|out| {
@@ -41,7 +45,11 @@ impl Coat {
                 let into = m * (2.0 * cosine) - out;
                 let above = into.z > 0.0;
                 let unmasked = facets.unmasked(into, m);
-                if above { unmasked * refraction(cosine, eta.recip()).reflected } else { 0.0 }
+                if above {
+                    unmasked * refraction(cosine, eta.recip()).reflected
+                } else {
+                    0.0
+                }
             })
         })?;
         // The mean over the table, ends included, is 1.5 % less than the integral where nearly everything comes
@@ -88,7 +96,11 @@ fn table(f: impl Fn(Vec3A) -> Result<f32, Error>) -> Result<Box<[f32]>, Error> {
     (0..COSINES)
         .map(|entry| {
             let cosine = cosine(entry);
-            f(Vec3A::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine))
+            f(Vec3A::new(
+                (1.0 - cosine * cosine).max(0.0).sqrt(),
+                0.0,
+                cosine,
+            ))
         })
         .collect()
 }
@@ -100,7 +112,7 @@ fn over_facets(
     f: impl Fn(Vec3A) -> f32 + Sync,
 ) -> Result<f32, Error> {
     let [generator, count] = FIBONACCI;
-    let points = Lattice::new(count, &[1, generator])?.folded();
+    let points = Folded::new(Lattice::new(count, &[1, generator])?);
     let facets = cube(|u: [f64; 2]| f(facets.sample(out, singles(u))));
     let mean = Average::new(points, count).estimate(&facets)?.mean;
     #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]

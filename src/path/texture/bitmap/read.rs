@@ -56,9 +56,7 @@ fn read(path: &Path, encoding: Encoding) -> Result<Bitmap, FileError> {
             let values = picture.into_rgb16().into_raw();
             Bitmap::new(width, components, values.into_iter().map(decode).collect())
         }
-        _ if grey => {
-            Bitmap::of_bytes(width, components, picture.into_luma8().into_raw(), encoding)
-        }
+        _ if grey => Bitmap::of_bytes(width, components, picture.into_luma8().into_raw(), encoding),
         _ => Bitmap::of_bytes(width, components, picture.into_rgb8().into_raw(), encoding),
     };
     bitmap.map_err(|error| fail(error.into()))

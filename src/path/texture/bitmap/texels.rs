@@ -45,11 +45,7 @@ enum Values {
 }
 
 impl Texels {
-    pub(super) fn floats(
-        width: usize,
-        components: usize,
-        values: Vec<f32>,
-    ) -> Result<Self, Error> {
+    pub(super) fn floats(width: usize, components: usize, values: Vec<f32>) -> Result<Self, Error> {
         let height = rows(width, components, values.len())?;
         Ok(Self {
             width,

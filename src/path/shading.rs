@@ -1,0 +1,37 @@
+//! What a surface looks like beyond its place: texture coordinates and a normal for shading.
+
+use glam::{Vec2, Vec3A};
+
+/// What a [law of scattering](super::bsdf::Bsdf) needs to know of a surface beyond point and normal: nothing,
+/// `()`, or its [`Shading`].
+pub trait Detail: Copy + Send + Sync {
+    /// The detail, from a function that computes all there is to know. The function is called only if it is
+    /// needed.
+    fn from_shading(shading: impl FnOnce() -> Shading) -> Self;
+}
+
+impl Detail for () {
+    #[inline]
+    fn from_shading(_: impl FnOnce() -> Shading) -> Self {}
+}
+
+impl Detail for Shading {
+    #[inline]
+    fn from_shading(shading: impl FnOnce() -> Self) -> Self {
+        shading()
+    }
+}
+
+/// The parametrisation of a surface at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shading {
+    /// The texture coordinates.
+    pub uv: Vec2,
+    /// The normal that light is scattered by, of length 1. Where normals are interpolated it differs from that of the
+    /// surface.
+    pub normal: Vec3A,
+    /// How the point moves with the first texture coordinate.
+    pub du: Vec3A,
+    /// How the point moves with the second texture coordinate.
+    pub dv: Vec3A,
+}

@@ -52,6 +52,8 @@ impl Sampler for Fixed<'_> {
 struct Case {
     name: String,
     law: Material,
+    /// The index of refraction inside over that outside.
+    eta: f32,
 }
 
 impl Case {
@@ -59,7 +61,12 @@ impl Case {
         Self {
             name: name.into(),
             law: law.into(),
+            eta: 1.0,
         }
+    }
+
+    fn refracting(self, eta: f32) -> Self {
+        Self { eta, ..self }
     }
 }
 
@@ -104,7 +111,8 @@ fn rough_cases(alpha: [f32; 2]) -> Vec<Case> {
         cases.push(Case::new(name("copper"), copper));
         for eta in [1.5, 0.7, 1.05] {
             let glass = RoughDielectric::new(eta, 1.0, roughness).unwrap();
-            cases.push(Case::new(name(&format!("glass {eta}")), glass));
+            let name = name(&format!("glass {eta}"));
+            cases.push(Case::new(name, glass).refracting(eta));
         }
         if alpha[0] == alpha[1] {
             let plastic = RoughPlastic::new(white(), 1.49, 1.0, distribution, alpha[0]).unwrap();
@@ -130,7 +138,7 @@ fn smooth_cases() -> Vec<Case> {
         Case::new("lambertian", Lambertian::new([1.0; 3]).unwrap()),
         Case::new("mirror", mirror()),
         Case::new("copper", copper()),
-        Case::new("glass", Dielectric::new(1.5, 1.0).unwrap()),
+        Case::new("glass", Dielectric::new(1.5, 1.0).unwrap()).refracting(1.5),
         Case::new("no boundary", Dielectric::new(1.0, 1.0).unwrap()),
         Case::new("nearly none", Dielectric::new(1.000_001, 1.0).unwrap()),
         Case::new("pane", ThinDielectric::new(1.5, 1.0).unwrap()),
@@ -158,12 +166,23 @@ fn smooth_cases() -> Vec<Case> {
     ]
 }
 
-/// The solid angle is divided into rings of equal height and sectors: the directions in the middle of `rings` by `sectors`
-/// cells over the whole sphere.
-fn sphere(rings: u16, sectors: u16) -> impl Iterator<Item = Vec3A> {
+/// The middle of a cell of the sphere, and the solid angle of the cell.
+struct Cell {
+    middle: Vec3A,
+    angle: f32,
+}
+
+/// The sphere in `rings` of equal width, each in `sectors` cells.
+fn sphere(rings: u16, sectors: u16) -> impl Iterator<Item = Cell> {
     (0..rings).flat_map(move |i| {
-        let cosine = 1.0 - 2.0 * (f32::from(i) + 0.5) / f32::from(rings);
-        (0..sectors)
-            .map(move |j| direction(cosine, 2.0 * PI * (f32::from(j) + 0.5) / f32::from(sectors)))
+        let width = PI / f32::from(rings);
+        let polar = (f32::from(i) + 0.5) * width;
+        (0..sectors).map(move |j| Cell {
+            middle: direction(
+                polar.cos(),
+                2.0 * PI * (f32::from(j) + 0.5) / f32::from(sectors),
+            ),
+            angle: 2.0 * PI / f32::from(sectors) * polar.sin() * width,
+        })
     })
 }

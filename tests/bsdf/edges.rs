@@ -34,7 +34,7 @@ fn all_cases() -> Vec<Case> {
 
 #[test]
 fn whatever_is_drawn_is_finite_and_as_evaluated() {
-    for Case { name, law } in all_cases() {
+    for Case { name, law, .. } in all_cases() {
         for cosine in COSINES.iter().flat_map(|&cosine| [cosine, -cosine]) {
             let out = direction(cosine, 0.7);
             for a in COORDINATES {
@@ -69,7 +69,7 @@ fn weights_are_values_over_densities() {
     for alpha in [[0.05, 0.05], [0.3, 0.3], [1.0, 1.0], [0.1, 0.6]] {
         cases.extend(rough_cases(alpha));
     }
-    for Case { name, law } in cases {
+    for Case { name, law, .. } in cases {
         for cosine in [0.95, 0.5, 0.1, -0.3, -0.9] {
             let out = direction(cosine, 2.0);
             for i in 0..200_u16 {
@@ -95,12 +95,12 @@ fn weights_are_values_over_densities() {
 
 #[test]
 fn single_directions_are_only_met() {
-    for Case { name, law } in all_cases() {
+    for Case { name, law, .. } in all_cases() {
         if !Law::is_delta(&law) {
             continue;
         }
-        for into in sphere(8, 8) {
-            let evaluated = law.evaluate(&(), direction(0.6, 0.0), into);
+        for cell in sphere(8, 8) {
+            let evaluated = law.evaluate(&(), direction(0.6, 0.0), cell.middle);
             assert_eq!(
                 (evaluated.density, evaluated.value),
                 (0.0, Vec3A::ZERO),
@@ -120,7 +120,7 @@ fn the_inner_side_of_what_is_opaque_is_black() {
         "plastic",
         Plastic::new(white(), 1.49, 1.0).unwrap(),
     ));
-    for Case { name, law } in cases {
+    for Case { name, law, .. } in cases {
         let (above, below) = (direction(0.6, 1.0), direction(-0.6, 1.0));
         let u = [0.3, 0.4, 0.5];
         assert!(
@@ -145,7 +145,7 @@ fn what_is_outside_the_domain_is_refused() {
     assert!(Roughness::new(Distribution::Ggx, Uniform::from(-0.1)).is_err());
     assert!(Roughness::new(Distribution::Ggx, nan).is_err());
     assert!(Plastic::new(white(), 0.0, 1.0).is_err());
-    assert!(Plastic::new(2.0.into(), 1.5, 1.0).is_err_and(|_: estimand::Error| true));
+    assert!(Plastic::new(Uniform::from(2.0), 1.5, 1.0).is_err());
     assert!(ThinDielectric::new(1.5, f32::NAN).is_err());
     let message = Diffuse::new(Uniform::from([0.5, 1.5, 0.5])).unwrap_err();
     assert!(message.to_string().contains("1.5"), "{message}");

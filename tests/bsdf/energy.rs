@@ -50,7 +50,7 @@ fn a_white_surrounding_is_not_outshone() {
     ] {
         cases.extend(rough_cases(alpha));
     }
-    for Case { name, law } in cases {
+    for Case { name, law, .. } in cases {
         for cosine in [1.0, 0.7, 0.3, 0.05, -0.05, -0.5, -1.0] {
             let seen = drawn(&law, direction(cosine, 1.0), false);
             // The fit of the reflectance of the coat, its table, and the rule of integration are off by so much.
@@ -76,7 +76,7 @@ fn nothing_is_lost_where_nothing_can_be() {
         "nothing",
         "polished",
     ];
-    for Case { name, law } in smooth_cases() {
+    for Case { name, law, .. } in smooth_cases() {
         if !names.contains(&name.as_str()) {
             continue;
         }
@@ -91,45 +91,33 @@ fn what_is_drawn_adds_up_to_what_is_evaluated() {
     for alpha in [[0.3, 0.3], [1.0, 1.0], [0.3, 0.7]] {
         cases.extend(rough_cases(alpha));
     }
-    const RINGS: u16 = 256;
-    const SECTORS: u16 = 128;
-    let cell = 4.0 * core::f64::consts::PI / f64::from(RINGS) / f64::from(SECTORS);
-    for Case { name, law } in cases {
-        if name.contains("1.05") {
+    for Case { name, law, eta } in cases {
+        if (eta - 1.0).abs() < 0.1 && eta != 1.0 {
             // Too narrow a lobe for the grid; the density is tested where it is.
             continue;
         }
         for cosine in [0.9, 0.3, -0.6] {
             let out = direction(cosine, 0.4);
-            let seen: f64 = sphere(RINGS, SECTORS)
-                .map(|into| {
-                    let value = law.evaluate(&(), out, into).value.max_element();
-                    f64::from(value) * refracted(&law, out, into)
+            let seen: f64 = sphere(256, 128)
+                .map(|Cell { middle, angle }| {
+                    let value = law.evaluate(&(), out, middle).value.max_element();
+                    f64::from(value * angle * compression(eta, out, middle))
                 })
                 .sum();
             let expected = drawn(&law, out, true);
-            let error = (cell * seen - expected).abs();
-            assert!(
-                error < 4e-3,
-                "{name} at {cosine}: {} {expected}",
-                cell * seen
-            );
+            let error = (seen - expected).abs();
+            assert!(error < 4e-3, "{name} at {cosine}: {seen} {expected}");
         }
     }
 }
 
 /// The square of the index of refraction on the side of `into` over that on the side of `out`.
-fn refracted(law: &Material, out: Vec3A, into: Vec3A) -> f64 {
+fn compression(eta: f32, out: Vec3A, into: Vec3A) -> f32 {
     if out.z * into.z > 0.0 {
         return 1.0;
     }
-    // What the law itself says of a direction that it draws on that side.
-    let drawn = law.sample(
-        &(),
-        out,
-        &mut Fixed::new(&[0.3, 0.4, 1.0 - f64::EPSILON / 2.0]),
-    );
-    drawn.map_or(1.0, |drawn| f64::from(drawn.eta * drawn.eta))
+    let square = eta * eta;
+    if out.z > 0.0 { square } else { square.recip() }
 }
 
 #[test]
@@ -143,25 +131,14 @@ fn light_goes_back_the_way_it_came() {
         Plastic::new(0.7.into(), 1.49, 1.0).unwrap(),
     ));
     cases.push(Case::new("diffuse", Diffuse::new(white()).unwrap()));
-    let directions: Vec<_> = sphere(6, 5).collect();
-    for Case { name, law } in cases {
+    let directions: Vec<_> = sphere(6, 5).map(|cell| cell.middle).collect();
+    for Case { name, law, eta } in cases {
         for &a in &directions {
             for &b in &directions {
                 let there = law.evaluate(&(), a, b).value / b.z.abs();
                 let back = law.evaluate(&(), b, a).value / a.z.abs();
-                let eta = name.split(' ').nth(1).and_then(|word| word.parse().ok());
-                let eta: f32 = if a.z * b.z > 0.0 {
-                    1.0
-                } else {
-                    eta.unwrap_or(1.0)
-                };
-                // From outside to inside, or the other way.
-                let square = if a.z > 0.0 {
-                    eta * eta
-                } else {
-                    (eta * eta).recip()
-                };
-                let error = (there * square - back).abs().max_element();
+                let there = there * compression(eta, a, b);
+                let error = (there - back).abs().max_element();
                 let case = format!("{name} {a} {b}: {there} {back}");
                 assert!(error <= 1e-3 * back.max_element() + 1e-5, "{case}");
             }

@@ -5,7 +5,7 @@ use super::*;
 use estimand::path::Spot;
 use estimand::path::bsdf::{BumpMap, Saturation, Tint};
 use estimand::path::texture::{Bitmap, Checkerboard, Filter, Parameter, Texture, Wrap};
-use glam::{Affine2, Mat2, Vec2};
+use glam::{Affine2, Vec2};
 use serde_json::Value;
 
 type Textured = Material<Texture>;
@@ -120,7 +120,7 @@ fn rough_law(name: &str) -> Textured {
     } else {
         Distribution::Beckmann
     };
-    let alpha = words.last().unwrap().parse();
+    let alpha = words.last().unwrap().parse().ok();
     let roughness = |other| roughness(distribution, alpha.map_or(other, |alpha| [alpha; 2]));
     match words[0] {
         "roughconductor" => RoughConductor::new(metal(), roughness([0.1, 0.4])).into(),
@@ -153,9 +153,10 @@ fn values_and_densities_are_mitsubas() {
     assert!(laws.len() > 30);
     for (name, rows) in laws {
         let law = law(name);
-        // Mitsuba takes fewer points for the tables of rough plastic.
+        // By how much the tables of rough plastic differ, each by its own rule of integration, which the choice of
+        // lobes magnifies.
         let mut relative = if name.starts_with("roughplastic") {
-            1e-3
+            3e-3
         } else {
             1e-4
         };
@@ -211,7 +212,7 @@ fn named_texture(name: &str) -> Texture {
     let image = image(words[1].parse().unwrap());
     if words[2] == "turned" {
         let turn =
-            Affine2::from_angle(30.0_f32.to_radians()) * Mat2::from_diagonal(Vec2::splat(1.5));
+            Affine2::from_angle(30.0_f32.to_radians()) * Affine2::from_scale(Vec2::splat(1.5));
         let shift = Affine2::from_translation(Vec2::new(0.2, 0.3));
         return image.transformed(shift * turn).into();
     }

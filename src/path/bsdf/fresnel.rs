@@ -12,13 +12,14 @@ pub(super) struct Refraction {
     pub(super) cosine: f32,
 }
 
-/// For a ray with the given cosine in `[0, 1]`, passing to a medium whose index of refraction is `eta` times
+/// For a ray with the given cosine in `[0, 1]` up to rounding, passing to a medium whose index of refraction is `eta` times
 /// the one it comes from.[^born]
 ///
 /// [^born]: Born, Max; Wolf, Emil (1999). *Principles of Optics*, 7th edition, section 1.5.2.
 ///     <https://doi.org/10.1017/CBO9781139644181>
 #[inline]
 pub(super) fn refraction(cosine: f32, eta: f32) -> Refraction {
+    let cosine = cosine.clamp(0.0, 1.0);
     // eta^2 - sine^2, without the cancellation where the indices are nearly the same.
     let squared = (eta - 1.0) * (eta + 1.0) + cosine * cosine;
     if squared <= 0.0 {
@@ -37,14 +38,15 @@ pub(super) fn refraction(cosine: f32, eta: f32) -> Refraction {
 }
 
 /// The fraction of red, green and blue that a conductor with the index of refraction `eta + i k` reflects, relative to
-/// what is outside, at the given cosine in `[0, 1]`.[^moller]
+/// what is outside, at the given cosine in `[0, 1]` up to rounding.[^moller]
 ///
 /// [^moller]: Möller, Karl Dieter (2007). *Optics: Learning by Computing*, 2nd edition, chapter 8.
 ///     <https://doi.org/10.1007/978-0-387-69492-4>
 #[inline]
 pub(super) fn conductor(cosine: f32, eta: Vec3A, k: Vec3A) -> Vec3A {
+    let cosine = cosine.clamp(0.0, 1.0);
     let squared_cosine = cosine * cosine;
-    let squared_sine = (1.0 - squared_cosine).max(0.0);
+    let squared_sine = 1.0 - squared_cosine;
     // (a + i b)^2 = (eta + i k)^2 - sine^2.
     let difference = eta * eta - k * k - squared_sine;
     let product = 2.0 * eta * k;

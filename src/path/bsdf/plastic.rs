@@ -130,7 +130,7 @@ impl<P: Parameter> Plastic<P> {
 
     #[inline]
     fn reflected(&self, cosine: f32) -> f32 {
-        refraction(cosine.min(1.0), self.eta).reflected
+        refraction(cosine, self.eta).reflected
     }
 }
 

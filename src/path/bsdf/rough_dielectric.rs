@@ -112,7 +112,7 @@ impl<P: Parameter> Law for RoughDielectric<P> {
             return Scattering::NONE;
         }
         let (facets, eta) = (side.facets, side.eta);
-        let reflected = refraction(cosine.min(1.0), eta).reflected;
+        let reflected = refraction(cosine, eta).reflected;
         let seen = facets.area(m) / facets.seen(out);
         let unmasked = facets.unmasked(into, m);
         let (density, weight) = if reflects {

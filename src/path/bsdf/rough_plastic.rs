@@ -93,7 +93,7 @@ impl<P: Parameter> Law for RoughPlastic<P> {
             return Scattering::NONE;
         }
         let m = (out + into).normalize();
-        let reflected = refraction(out.dot(m).min(1.0), self.eta).reflected;
+        let reflected = refraction(out.dot(m), self.eta).reflected;
         let facet = self.facets.area(m) / (4.0 * self.facets.seen(out));
         let mirror = facet * reflected * self.facets.unmasked(into, m);
         let [here, there] = [out, into].map(|v| self.coat.passed(v.z));

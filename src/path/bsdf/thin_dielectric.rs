@@ -57,7 +57,7 @@ impl<P: Parameter> Law for ThinDielectric<P> {
 
     #[inline]
     fn sample<S: Sampler>(&self, place: &P::Place, out: Vec3A, u: &mut S) -> Option<Scattered> {
-        let once = fresnel::refraction(out.z.abs().min(1.0), self.eta).reflected;
+        let once = fresnel::refraction(out.z.abs(), self.eta).reflected;
         // r + t^2 r + t^2 r^3 + ... with t = 1 - r.
         let reflected = 2.0 * once / (1.0 + once);
         Some(if single(u.next_1d()) < reflected {

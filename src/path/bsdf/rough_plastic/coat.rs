@@ -119,3 +119,57 @@ fn over_facets(
     let mean = mean as f32;
     Ok(mean)
 }
+
+#[cfg(test)]
+mod tests {
+    use core::f32::consts::PI;
+
+    use super::*;
+    use crate::path::bsdf::Distribution;
+
+    #[test]
+    fn the_table_is_the_integral_over_all_facets() {
+        const ETA: f32 = 1.49;
+        for distribution in [Distribution::Beckmann, Distribution::Ggx] {
+            for alpha in [0.05, 0.3] {
+                let facets = Microfacets::new(distribution, [alpha; 2]);
+                let coat = Coat::new(&facets, ETA).unwrap();
+                for out in [0.2_f32, 0.6, 1.0] {
+                    let out = Vec3A::new((1.0 - out * out).sqrt(), 0.0, out);
+                    let passed = integrate(|m| {
+                        let cosine = out.dot(m);
+                        if !(cosine > 0.0) {
+                            return 0.0;
+                        }
+                        let refraction = refraction(cosine, ETA);
+                        let into = m * (cosine / ETA - refraction.cosine) - out / ETA;
+                        let unmasked = facets.unmasked(into, m) * f32::from(u8::from(into.z < 0.0));
+                        let seen = facets.area(m) * cosine / facets.seen(out);
+                        seen * unmasked * (1.0 - refraction.reflected)
+                    });
+                    let error = (f64::from(coat.passed(out.z)) - passed).abs();
+                    // The table is interpolated.
+                    assert!(error < 1e-3, "{facets:?} {out}: {passed} {error}");
+                }
+            }
+        }
+    }
+
+    /// The midpoint rule over the upper hemisphere, dense towards the pole.
+    fn integrate(f: impl Fn(Vec3A) -> f32) -> f64 {
+        const RINGS: u16 = 600;
+        const SECTORS: u16 = 100;
+        let mut sum = 0.0;
+        for i in 0..RINGS {
+            let t = (f32::from(i) + 0.5) / f32::from(RINGS);
+            let theta = 0.5 * PI * t * t * t;
+            let ring = 1.5 * PI * t * t * theta.sin() / f32::from(RINGS);
+            for j in 0..SECTORS {
+                let phi = 2.0 * PI * (f32::from(j) + 0.5) / f32::from(SECTORS);
+                let (x, y) = (theta.sin() * phi.cos(), theta.sin() * phi.sin());
+                sum += f64::from(f(Vec3A::new(x, y, theta.cos())) * ring);
+            }
+        }
+        sum * 2.0 * core::f64::consts::PI / f64::from(SECTORS)
+    }
+}

@@ -130,32 +130,32 @@ impl<P> From<Null> for Material<P> {
     }
 }
 
-impl<P> From<TwoSided<Material<P>>> for Material<P> {
-    fn from(law: TwoSided<Material<P>>) -> Self {
+impl<P> From<TwoSided<Self>> for Material<P> {
+    fn from(law: TwoSided<Self>) -> Self {
         Self::TwoSided(Box::new(law))
     }
 }
 
-impl<P> From<Mask<Material<P>, P>> for Material<P> {
-    fn from(law: Mask<Material<P>, P>) -> Self {
+impl<P> From<Mask<Self, P>> for Material<P> {
+    fn from(law: Mask<Self, P>) -> Self {
         Self::Mask(Box::new(law))
     }
 }
 
-impl<P> From<Blend<Material<P>, P>> for Material<P> {
-    fn from(law: Blend<Material<P>, P>) -> Self {
+impl<P> From<Blend<Self, P>> for Material<P> {
+    fn from(law: Blend<Self, P>) -> Self {
         Self::Blend(Box::new(law))
     }
 }
 
-impl<P> From<BumpMap<Material<P>, P>> for Material<P> {
-    fn from(law: BumpMap<Material<P>, P>) -> Self {
+impl<P> From<BumpMap<Self, P>> for Material<P> {
+    fn from(law: BumpMap<Self, P>) -> Self {
         Self::BumpMap(Box::new(law))
     }
 }
 
-impl<P> From<NormalMap<Material<P>, P>> for Material<P> {
-    fn from(law: NormalMap<Material<P>, P>) -> Self {
+impl<P> From<NormalMap<Self, P>> for Material<P> {
+    fn from(law: NormalMap<Self, P>) -> Self {
         Self::NormalMap(Box::new(law))
     }
 }

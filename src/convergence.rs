@@ -20,6 +20,19 @@
 //! assert!(stratified.slope.unwrap().value < plain.slope.unwrap().value);
 //! # Ok::<(), estimand::Error>(())
 //! ```
+//!
+//! Where the integral is not known, a much longer estimate with an error bar stands in for it: [`Truth::of`]. Without
+//! either there is no error to be studied; such a study does not compile:
+//!
+//! ```compile_fail
+//! use estimand::{MonteCarlo, convergence::Study};
+//!
+//! Study::new([64, 256], 8)?.method("plain", MonteCarlo::new).run()?;
+//! # Ok::<(), estimand::Error>(())
+//! ```
+//!
+//! The feature `serde` saves and restores what a study has found; [`Convergence::rows`] is the same as a flat table. The
+//! feature `report` writes files and pages: see `report`.
 
 use core::fmt;
 use std::hint::black_box;
@@ -29,9 +42,13 @@ use crate::{Error, Integrand, Value, hash};
 
 mod curve;
 mod integral;
+mod row;
+mod truth;
 
-pub use curve::{Convergence, Curve, Sample, Slope};
+pub use curve::{Convergence, Curve, Run, Sample, Slope};
 pub use integral::Integral;
+pub use row::Row;
+pub use truth::Truth;
 
 /// What one run of a method has given; how long it took is measured around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,30 +63,7 @@ pub struct Trial {
     pub covered: Option<f64>,
 }
 
-/// What an integral is compared with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Truth<V> {
-    value: V,
-    noise: f64,
-}
-
-impl<V> Truth<V> {
-    /// The exact value.
-    pub const fn exact(value: V) -> Self {
-        Self { value, noise: 0.0 }
-    }
-
-    /// An estimate by a much longer run, with its standard error: where a method comes near it, the study
-    /// says so ([`Sample::limited`]) instead of drawing the reference's error as the method's.
-    pub const fn reference(value: V, std_error: f64) -> Self {
-        Self {
-            value,
-            noise: std_error,
-        }
-    }
-}
-
-type Run<'a> = Box<dyn Fn(u64, u64) -> Result<Trial, Error> + 'a>;
+type Method<'a> = Box<dyn Fn(u64, u64) -> Result<Trial, Error> + 'a>;
 
 /// Methods to be run side by side over growing counts.
 ///
@@ -83,8 +77,9 @@ pub struct Study<'a> {
     first_seed: u64,
     shortest: f64,
     noise: f64,
+    scale: Option<f64>,
     evaluation_seconds: Option<f64>,
-    methods: Vec<(String, Run<'a>)>,
+    methods: Vec<(String, Method<'a>)>,
     progress: Option<Box<dyn Fn(u64, u64) + 'a>>,
 }
 
@@ -113,6 +108,7 @@ impl<'a> Study<'a> {
             first_seed: 0,
             shortest: 2e-3,
             noise: 0.0,
+            scale: None,
             evaluation_seconds: None,
             methods: Vec::new(),
             progress: None,
@@ -134,6 +130,12 @@ impl<'a> Study<'a> {
     /// The same with a reference that is itself an estimate, with this root-mean-square error.
     pub const fn noise(mut self, noise: f64) -> Self {
         self.noise = noise;
+        self
+    }
+
+    /// The same with what errors are relative to: the size of the result, in its own unit.
+    pub const fn scale(mut self, scale: f64) -> Self {
+        self.scale = Some(scale);
         self
     }
 
@@ -159,12 +161,13 @@ impl<'a> Study<'a> {
         integrand: &'a I,
         truth: Truth<<I::Value as Value>::Wide>,
     ) -> Integral<'a, I> {
-        self.noise = truth.noise;
+        self.noise = truth.noise();
+        self.scale = Some(truth.scale());
         self.evaluation_seconds = Some(integral::seconds_per_evaluation(integrand));
         Integral {
             study: self,
             integrand,
-            truth: truth.value,
+            truth: truth.value(),
         }
     }
 
@@ -183,38 +186,34 @@ impl<'a> Study<'a> {
         }
         let runs = self.counts.len() as u64 * self.seeds * self.methods.len() as u64;
         let mut done = 0;
-        let mut curves: Vec<Curve> = self
-            .methods
-            .iter()
-            .map(|(name, _)| Curve::new(name.clone()))
-            .collect();
+        let mut of_method: Vec<Vec<Run>> = vec![Vec::new(); self.methods.len()];
         for &count in &self.counts {
-            let mut trials = vec![Vec::new(); self.methods.len()];
             for (_, run) in &self.methods {
                 run(count, hash::hash(self.first_seed, 0))?;
             }
             for seed in 0..self.seeds {
                 let seed = hash::hash(self.first_seed.wrapping_add(seed), 1);
-                for ((_, run), trials) in self.methods.iter().zip(&mut trials) {
-                    trials.push(timed(|| run(count, seed), self.shortest)?);
+                for ((_, run), runs_of_it) in self.methods.iter().zip(&mut of_method) {
+                    runs_of_it.push(timed(count, || run(count, seed), self.shortest)?);
                     done += 1;
                     if let Some(progress) = &self.progress {
                         progress(done, runs);
                     }
                 }
             }
-            for (curve, trials) in curves.iter_mut().zip(&trials) {
-                curve.samples.push(Sample::new(count, trials, self.noise));
-            }
         }
-        for curve in &mut curves {
-            curve.fit();
-        }
+        let curves: Result<Vec<Curve>, Error> = self
+            .methods
+            .iter()
+            .zip(of_method)
+            .map(|((name, _), runs)| Curve::of_runs(name, runs, self.noise))
+            .collect();
         Ok(Convergence {
             seeds: self.seeds,
             noise: self.noise,
+            scale: self.scale,
             evaluation_seconds: self.evaluation_seconds,
-            curves,
+            curves: curves?,
         })
     }
 }
@@ -230,16 +229,22 @@ impl fmt::Debug for Study<'_> {
     }
 }
 
-/// Runs at least once and for at least `shortest` seconds; the trial and the seconds of one run.
-fn timed(run: impl Fn() -> Result<Trial, Error>, shortest: f64) -> Result<(Trial, f64), Error> {
+/// Runs at least once and for at least `shortest` seconds.
+fn timed(count: u64, run: impl Fn() -> Result<Trial, Error>, shortest: f64) -> Result<Run, Error> {
     let start = Instant::now();
     let mut runs = 0_u32;
     loop {
         let trial = black_box(run()?);
         runs += 1;
-        let seconds = start.elapsed().as_secs_f64();
+        // Clocks tick: a run shorter than that took no time, but is not to be divided by.
+        let seconds = start.elapsed().as_secs_f64().max(1e-9);
         if seconds >= shortest {
-            return Ok((trial, seconds / f64::from(runs)));
+            let seconds = seconds / f64::from(runs);
+            return Ok(Run {
+                count,
+                trial,
+                seconds,
+            });
         }
     }
 }
@@ -281,7 +286,7 @@ mod tests {
                 "{}: {slope:?}",
                 curve.method
             );
-            assert!(slope.low <= slope.value && slope.value <= slope.high);
+            assert!(slope.interval.unwrap().contains(slope.value));
         }
         // The mean square of 1/2 + u is 13/12; the band holds it.
         let first = &result.curves[0].samples[0];

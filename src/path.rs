@@ -62,5 +62,5 @@ pub use pictures::Pictures;
 pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
 pub use render::{Pixel, Unfinished, View};
-pub use scene::{Object, Scene, Segment, Vertex};
+pub use scene::{Instances, Object, Scene, Segment, Vertex};
 pub use shading::{Detail, Shading};

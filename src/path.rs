@@ -29,6 +29,8 @@
 //! | [`Scene`], [`Object`] | shapes, and what they do to light |
 //! | [`shape`], [`bsdf`], [`light`], [`sensor`], [`filter`] | one kind of shape, scattering, source, camera and filter a file |
 //! | [`Paths::radiance`] | the rendering equation |
+//! | [`Recursive`] | the same as it is taught, to be compared with |
+//! | [`Adaptive`] | more samples where the picture needs them |
 //! | [`Image`] | pictures, their errors, their files |
 //! | [`scenes`] | the Cornell box and others, as `reference/scenes` has them for Mitsuba |
 //!
@@ -40,6 +42,7 @@
 //! - Colour is linear red, green and blue. No media, no textures, no spectra.
 //! - Boxes around many shapes come from the crate `obvhs`; up to 48 shapes are swept over instead.
 
+mod adaptive;
 pub mod bsdf;
 mod color;
 pub mod filter;
@@ -50,6 +53,7 @@ pub mod light;
 mod pictures;
 mod radiance;
 mod ray;
+mod recursive;
 mod render;
 mod scene;
 pub mod scenes;
@@ -57,10 +61,12 @@ pub mod sensor;
 mod shading;
 pub mod shape;
 
+pub use adaptive::{Adapted, Adaptive};
 pub use image::Image;
 pub use pictures::Pictures;
 pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
+pub use recursive::{Direct, Ending, Recursive, RecursivePixel};
 pub use render::{Pixel, Unfinished, View};
 pub use scene::{Object, Scene, Segment, Vertex};
 pub use shading::{Detail, Shading};

@@ -7,8 +7,10 @@
 //! [^ernst]: Ernst, Manfred; Stamminger, Marc; Greiner, Günther (2006). *Filter Importance Sampling*.
 //!     <https://doi.org/10.1109/RT.2006.280223>
 
+mod centre;
 mod square;
 
+pub use centre::Centre;
 pub use square::BoxFilter;
 
 /// A reconstruction filter.

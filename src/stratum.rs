@@ -84,6 +84,8 @@ pub(crate) struct Stratified<V> {
     pub(crate) freedom: f64,
     /// The largest share of one value in the variance of the mean.
     pub(crate) share: f64,
+    /// The largest absolute value.
+    pub(crate) size: V,
 }
 
 impl<V: Value> Stratified<V> {
@@ -103,6 +105,12 @@ impl<V: Value> Stratified<V> {
         let largest = errors
             .iter()
             .fold(V::ZERO, |largest, error| largest.zip(*error, f64::max));
+        let size = strata.iter().fold(V::ZERO, |size, stratum| {
+            let here = stratum
+                .low
+                .zip(stratum.high, |low, high| low.abs().max(high.abs()));
+            size.zip(here, f64::max)
+        });
         let (mut squares, mut fourths, mut peak) = (V::ZERO, V::ZERO, V::ZERO);
         for (stratum, &error) in strata.iter().zip(&errors) {
             let moments = stratum.moments;
@@ -147,6 +155,7 @@ impl<V: Value> Stratified<V> {
             std_error,
             freedom,
             share,
+            size,
         })
     }
 
@@ -163,6 +172,7 @@ impl<V: Value> Stratified<V> {
         if share > 0.05 {
             warnings.push(Warning::FewValues { share });
         }
+        warnings.extend(Warning::of_rounding(self.std_error, self.size));
         warnings
     }
 }

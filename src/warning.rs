@@ -25,7 +25,7 @@ pub enum Warning {
         /// Hill's estimate of the tail's exponent: below 2 there is no variance.
         exponent: f64,
     },
-    /// Fewer than 30 independent values, or fewer than 10 000 of an adaptive estimator: the interval relies
+    /// Fewer than 30 independent values, or fewer than 1000 of an adaptive estimator: the interval relies
     /// on more.
     SmallSample {
         /// How many there were.
@@ -100,6 +100,18 @@ impl Warning {
         (count < 30).then_some(Self::SmallSample { count })
     }
 
+    /// `size` is the largest absolute value, per component.
+    pub(crate) fn of_rounding<V: Value>(std_error: V, size: V) -> Option<Self> {
+        let mut largest = 0.0_f64;
+        let _ = size.zip(std_error, |size, error| {
+            if error > 0.0 && error < f64::EPSILON * size {
+                largest = largest.max(size);
+            }
+            size
+        });
+        (largest > 0.0).then_some(Self::Rounding { largest })
+    }
+
     pub(crate) fn of_replicates(replicates: u64) -> Option<Self> {
         (replicates < 8).then_some(Self::FewReplicates { replicates })
     }
@@ -143,17 +155,8 @@ pub(crate) fn diagnose<V: Value>(tally: &Tally<V>, std_error: Option<V>) -> Vec<
         warnings.push(Warning::HeavyTail { exponent });
     }
 
-    let mut largest = 0.0_f64;
     let size = high.zip(low, |high, low| high.abs().max(low.abs()));
-    let _ = size.zip(std_error, |size, error| {
-        if error > 0.0 && error < f64::EPSILON * size {
-            largest = largest.max(size);
-        }
-        0.0
-    });
-    if largest > 0.0 {
-        warnings.push(Warning::Rounding { largest });
-    }
+    warnings.extend(Warning::of_rounding(std_error, size));
     warnings
 }
 

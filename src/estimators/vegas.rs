@@ -26,8 +26,8 @@ use adaptation::Adaptation;
 /// [`Warning::NoSpread`] or [`Warning::FewValues`]. Peaks along diagonals gain little. For smooth
 /// integrands a trained map under scrambled nets ([`Mapped`](crate::integrands::Mapped)) is better by far.
 ///
-/// Below 10 000 evaluations the strata's variances are learned from too few points: intervals hold the integral less often than
-/// they claim, and [`Warning::SmallSample`] says so.
+/// Below 1000 evaluations the variances of the strata are known from too few points: intervals hold the integral less often
+/// than they claim, and [`Warning::SmallSample`] says so.
 ///
 /// All values zero: the map stays as it is, and the estimate is zero. One iteration: it is not trained, and
 /// there is no chi-square.
@@ -261,6 +261,7 @@ impl Vegas {
                 1e9
             },
             share: largest_share,
+            size: state.adaptation.scale,
         };
         // Each component's own; largest of all reported.
         let per_freedom = 1.0 / (number as f64 - 1.0).max(1.0);
@@ -289,11 +290,15 @@ impl Vegas {
             }
         });
         let mut warnings = together.warnings();
-        if self.count < 10 * ENOUGH {
+        if self.count < ENOUGH {
             let count = self.count;
             warnings.push(Warning::SmallSample { count });
         }
-        if let Some(chi_square) = chi_square.filter(|&chi_square| chi_square > limit) {
+        // Iterations that differ by rounding alone contradict nothing.
+        let rounding = |warning: &Warning| matches!(warning, Warning::Rounding { .. });
+        if let Some(chi_square) = chi_square.filter(|&chi_square| chi_square > limit)
+            && !warnings.iter().any(rounding)
+        {
             warnings.push(Warning::Inconsistent { chi_square });
         }
         let estimate = Estimate {

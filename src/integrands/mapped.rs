@@ -101,6 +101,8 @@ impl ImportanceMap {
 
     /// Moves the ends of the bins so that each holds the same part of `weights`, the mean square of the integrand in each bin,
     /// `damping` slowing it down from 1 to 0. Weights that are all zero or not finite change nothing.
+    ///
+    /// In the long run no bin is more than twice as wide as its neighbours.
     pub(crate) fn refine(&mut self, weights: &[Vec<f64>], damping: f64) {
         for (axis, weights) in self.axes.iter_mut().zip(weights) {
             let sum: f64 = weights.iter().sum();
@@ -115,7 +117,7 @@ impl ImportanceMap {
                     (left + 6.0 * weights[bin] + right) / (8.0 * sum)
                 })
                 .collect();
-            let damped: Vec<f64> = smooth
+            let mut damped: Vec<f64> = smooth
                 .iter()
                 .map(|&d| match d {
                     d if d <= 0.0 => 0.0,
@@ -123,6 +125,7 @@ impl ImportanceMap {
                     d => ((1.0 - d) / -d.ln()).powf(damping),
                 })
                 .collect();
+            grade(&mut damped, axis);
             let total: f64 = damped.iter().sum();
             let share = total / damped.len() as f64;
             let old = axis.clone();
@@ -142,6 +145,23 @@ impl ImportanceMap {
             }
         }
     }
+}
+
+/// Raises the `shares` of the bins of `axis` so far that, as they are repeated, no bin stays more than twice as wide as its
+/// neighbours.
+///
+/// Where an integrand ends within a bin, or where all points of a bin missed it, the bin's few hits have the weight of its
+/// width: much wider than the next bin, they are the rare events that make error bars lie.
+fn grade(shares: &mut [f64], axis: &[f64]) {
+    let width = |bin: usize| axis[bin + 1] - axis[bin];
+    let mut raise = |bin: usize, neighbour: usize| {
+        // So many bins, each twice as wide as the one before, lead from the neighbour across the bin.
+        let ratio = width(bin) / width(neighbour).max(f64::MIN_POSITIVE);
+        shares[bin] = shares[bin].max(shares[neighbour] * (1.0 + 0.5 * ratio).log2());
+    };
+    let last = axis.len() - 2;
+    (1..=last).for_each(|bin| raise(bin, bin - 1));
+    (0..last).rev().for_each(|bin| raise(bin, bin + 1));
 }
 
 /// An integrand at the images of the points under an [`ImportanceMap`], weighted so that its integral stays the same.
@@ -225,6 +245,29 @@ mod tests {
             let expected = (place as f64 / 64.0).sqrt();
             assert!((end - expected).abs() < 0.02, "{end} at {place}");
         }
+    }
+
+    #[test]
+    fn an_edge_has_no_bin_much_wider_than_the_next() {
+        // 1 up to 0.3 and 0 beyond: without grading one bin reaches from the edge to the end, a hundred times as wide as
+        // the next.
+        let mut map = ImportanceMap::identity(1, 64).unwrap();
+        for _ in 0..60 {
+            let axis = map.axis(0).unwrap().to_vec();
+            let weights = axis
+                .windows(2)
+                .map(|ends| (0.3 - ends[0]).clamp(0.0, ends[1] - ends[0]) * (ends[1] - ends[0]))
+                .collect();
+            map.refine(&[weights], 0.5);
+        }
+        let axis = map.axis(0).unwrap();
+        let widths: Vec<f64> = axis.windows(2).map(|ends| ends[1] - ends[0]).collect();
+        for pair in widths.windows(2) {
+            let ratio = (pair[0] / pair[1]).max(pair[1] / pair[0]);
+            assert!(ratio < 2.2, "{pair:?}");
+        }
+        let beyond = axis.iter().filter(|&&end| end > 0.3).count();
+        assert!(beyond < 16, "{beyond} of 64 bins are where nothing is");
     }
 
     #[test]

@@ -5,6 +5,8 @@
 //! | [`NoLight`] | 0 |
 //! | [`AreaLights`] | 2, however many there are |
 //! | [`NoEnvironment`], [`Constant`] | 0 |
+//! | [`Sky`] | 2 |
+//! | [`Surroundings`]: [`PointLight`], [`SpotLight`], [`DirectionalLight`] and a background | 0 to 3 |
 //!
 //! # Writing your own
 //!
@@ -12,7 +14,12 @@
 //! around it, and points. At every vertex each of the two draws one sample.
 
 mod area;
+mod directional;
 mod environment;
+mod point;
+mod sky;
+mod spot;
+mod surroundings;
 
 use glam::Vec3A;
 
@@ -21,7 +28,12 @@ use super::{Segment, Shading, Surface};
 use crate::{Error, Sampler};
 
 pub use area::AreaLights;
+pub use directional::DirectionalLight;
 pub use environment::{Constant, Environment, NoEnvironment};
+pub use point::PointLight;
+pub use sky::Sky;
+pub use spot::SpotLight;
+pub use surroundings::{Background, Source, Surroundings};
 
 /// All sources of light that are shapes of the scene.
 pub trait Light: Sync + Sized {

@@ -58,7 +58,7 @@ pub(super) struct Adaptation<V> {
     strata: Grid,
     counts: Vec<u64>,
     /// The largest absolute values seen, per component: all components train the map on the same scale.
-    scale: V,
+    pub(super) scale: V,
 }
 
 /// What one iteration has given.

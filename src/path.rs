@@ -68,5 +68,5 @@ pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
 pub use recursive::{Direct, Ending, Recursive, RecursivePixel};
 pub use render::{Pixel, Unfinished, View};
-pub use scene::{Object, Scene, Segment, Vertex};
+pub use scene::{Instances, Object, Scene, Segment, Vertex};
 pub use shading::{Detail, Shading};

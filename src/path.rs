@@ -30,6 +30,8 @@
 //! | [`texture`] | what varies over a surface |
 //! | [`shape`], [`bsdf`], [`light`], [`sensor`], [`filter`] | one kind of shape, scattering, source, camera and filter a file |
 //! | [`Paths::radiance`] | the rendering equation |
+//! | [`Recursive`] | the same as it is taught, to be compared with |
+//! | [`Adaptive`] | more samples where the picture needs them |
 //! | [`Image`] | pictures, their errors, their files |
 //! | [`scenes`] | the Cornell box and others, as `reference/scenes` has them for Mitsuba |
 //!
@@ -41,6 +43,7 @@
 //! - Colour is linear red, green and blue. No media, no spectra.
 //! - Boxes around many shapes come from the crate `obvhs`; up to 48 shapes are swept over instead.
 
+mod adaptive;
 pub mod bsdf;
 mod color;
 pub mod filter;
@@ -52,6 +55,7 @@ mod pictures;
 mod place;
 mod radiance;
 mod ray;
+mod recursive;
 mod render;
 mod scene;
 pub mod scenes;
@@ -60,12 +64,14 @@ mod shading;
 pub mod shape;
 pub mod texture;
 
+pub use adaptive::{Adapted, Adaptive};
 pub use frame::Frame;
 pub use image::Image;
 pub use pictures::Pictures;
 pub use place::{Place, Spot};
 pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
+pub use recursive::{Direct, Ending, Recursive, RecursivePixel};
 pub use render::{Pixel, Unfinished, View};
 pub use scene::{Instances, Object, Scene, Segment, Vertex};
 pub use shading::{Detail, Shading};

@@ -7,7 +7,7 @@ use glam::Vec3A;
 use super::{Emission, Emitter, Illumination, Light};
 use crate::path::frame::singles;
 use crate::path::shape::{Primitive, Shape};
-use crate::path::{Segment, Shading, Surface};
+use crate::path::{Segment, Surface};
 use crate::{Error, Sampler};
 
 /// Many shapes that emit light from their outer sides, chosen by what they may do for the surface at hand.
@@ -72,7 +72,7 @@ impl Bound {
             high,
             axis,
             spread,
-            power: emitter.radiance.element_sum() * emitter.shape.area(),
+            power: single(emitter.power()),
         }
     }
 
@@ -121,6 +121,11 @@ impl Bound {
         }
         near * angle.max(0.0).cos()
     }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+fn single(x: f64) -> f32 {
+    x as f32
 }
 
 /// The narrowest cone around two cones, each an axis and an angle in `[0, pi]`.
@@ -331,35 +336,30 @@ impl Light for LightTree {
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
         let [a, b] = u.next_2d();
         let chosen = self.choose(from.point, a)?;
-        let Emitter { shape, radiance } = &self.emitters[chosen.emitter as usize];
-        let there = shape.sample(from.point, singles([chosen.left, b]));
-        let density = chosen.probability * shape.density(from.point, &there);
+        let emitter = &self.emitters[chosen.emitter as usize];
+        let there = emitter.shape.sample(from.point, singles([chosen.left, b]));
+        let density = chosen.probability * emitter.shape.density(from.point, &there);
         let lit = there.normal.dot(from.point - there.point) > 0.0;
         if !(lit && density > 0.0 && density < f32::MAX) {
             return None;
         }
         Some(Illumination {
             way: Segment::between(from, &there)?,
-            weight: *radiance / density,
+            weight: emitter.radiance_at(&there) / density,
             density,
         })
     }
 
     #[inline]
-    fn emitted(
-        &self,
-        emitter: u32,
-        from: Vec3A,
-        surface: &Surface,
-        _: impl FnOnce() -> Shading,
-    ) -> Emission {
-        let Emitter { shape, radiance } = &self.emitters[emitter as usize];
+    fn emitted(&self, emitter: u32, from: Vec3A, surface: &Surface) -> Emission {
         if surface.normal.dot(from - surface.point) <= 0.0 {
             return Emission::NONE;
         }
+        let probability = self.probability(emitter, from);
+        let emitter = &self.emitters[emitter as usize];
         Emission {
-            radiance: *radiance,
-            density: self.probability(emitter, from) * shape.density(from, surface),
+            radiance: emitter.radiance_at(surface),
+            density: probability * emitter.shape.density(from, surface),
         }
     }
 }
@@ -393,6 +393,7 @@ mod tests {
                 Emitter {
                     shape,
                     radiance: Vec3A::splat(0.1 + h * h * 5.0),
+                    picture: None,
                 }
             })
             .collect()
@@ -466,8 +467,8 @@ mod tests {
         let emitters = lights(200);
         let expected: f64 = emitters
             .iter()
-            .map(|&emitter| {
-                let one = LightTree::new(vec![emitter]).unwrap();
+            .map(|emitter| {
+                let one = LightTree::new(vec![emitter.clone()]).unwrap();
                 estimate(
                     &|index| one.sample(&from, &mut points.point(index)),
                     1 << 10,

@@ -239,7 +239,7 @@ def machine():
     with open("/proc/cpuinfo") as file:
         model = next(line.split(":")[1].strip() for line in file if line.startswith("model name"))
     load = os.getloadavg()[0]
-    yield f"{os.cpu_count()} cores of {model}; {load:.1f} jobs running when it began; scipy {scipy.__version__}."
+    yield f"{os.cpu_count()} cores of {model}; a load of {load:.1f} in the minute before; scipy {scipy.__version__}."
 
 
 TABLES = {f.__name__: f for f in (machine, speed, large, point_sets, star, l2, division)}

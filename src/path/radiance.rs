@@ -80,10 +80,8 @@ impl Paths {
             };
             // Emitted light, met by a direction that was drawn at the surface before.
             if let Some(emitter) = vertex.emitter {
-                let shading = || vertex.shading();
-                let emission = scene
-                    .lights()
-                    .emitted(emitter, ray.origin, vertex.place(), shading);
+                let lights = scene.lights();
+                let emission = lights.emitted(emitter, ray.origin, vertex.place());
                 radiance += throughput * emission.radiance * power(density, emission.density);
             }
             if segment >= self.longest {
@@ -142,7 +140,7 @@ pub(in crate::path) fn play<S: Sampler>(carried: f32, u: &mut S) -> Option<f32> 
 /// power heuristic, as [`Heuristic::Power`](crate::integrands::Heuristic::Power) has it, in `f32`. The density of a direction
 /// without alternative is infinite, its weight 1.
 #[inline]
-fn power(own: f32, other: f32) -> f32 {
+pub(super) fn power(own: f32, other: f32) -> f32 {
     if !(own > 0.0) {
         return 0.0;
     }

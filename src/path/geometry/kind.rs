@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3A};
 
-use crate::path::shape::{Flat, Primitive};
+use crate::path::shape::{Flat, Primitive, Shape};
 
 /// How simple the equations of a flat shape are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -64,12 +64,12 @@ pub(super) fn divides(flat: &Flat, shapes: &[Primitive]) -> bool {
                     heights.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b)),
                 ]
             }
-            Primitive::Sphere(sphere) => {
-                let (middle, radius) = (
-                    height(sphere.center().as_dvec3()),
-                    f64::from(sphere.radius()),
-                );
-                [middle - radius, middle + radius]
+            other => {
+                // Of the box around it, which is not smaller.
+                let [low, high] = other.bounds().map(Vec3A::as_dvec3);
+                let (middle, half) = (height(0.5 * (low + high)), 0.5 * (high - low));
+                let reach = normal.abs().dot(half);
+                [middle - reach, middle + reach]
             }
         };
         (low, high) = (low.min(least), high.max(most));

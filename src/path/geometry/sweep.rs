@@ -3,7 +3,7 @@
 use super::Found;
 use super::kind::{Kind, divides};
 use crate::path::ray::Ray;
-use crate::path::shape::{Flat, Primitive, Shape, Sphere};
+use crate::path::shape::{Flat, Primitive, Shape};
 
 /// The shapes, laid out for vector code.
 ///
@@ -11,11 +11,12 @@ use crate::path::shape::{Flat, Primitive, Shape, Sphere};
 #[derive(Debug)]
 pub(in crate::path) struct Sweep {
     flats: Vec<Flats>,
-    /// Those of them that can be between two points of the scene.
+    /// Those of them that can be between two points of the scene, if the shapes are all there is.
     dividing: Vec<Flats>,
     /// Which shape each of the flats is: those of simple equations come first.
     pub(in crate::path) flat_shapes: Vec<usize>,
-    spheres: Vec<(usize, Sphere)>,
+    /// The shapes that are not flat, and which they are.
+    others: Vec<(usize, Primitive)>,
     #[cfg(feature = "simd")]
     arch: pulp::Arch,
 }
@@ -105,11 +106,11 @@ fn slot(block: f32, lane: usize) -> usize {
 
 impl Sweep {
     pub(super) fn new(shapes: &[Primitive]) -> Self {
-        let (mut flats, mut spheres) = (Vec::new(), Vec::new());
+        let (mut flats, mut others) = (Vec::new(), Vec::new());
         for (index, shape) in shapes.iter().enumerate() {
             match shape {
                 Primitive::Flat(flat) => flats.push((index, flat)),
-                Primitive::Sphere(sphere) => spheres.push((index, *sphere)),
+                other => others.push((index, *other)),
             }
         }
         flats.sort_by_key(|(_, flat)| Kind::of(flat));
@@ -119,7 +120,7 @@ impl Sweep {
             flats: Flats::blocks(in_order.clone()),
             dividing: Flats::blocks(dividing),
             flat_shapes: flats.iter().map(|&(index, _)| index).collect(),
-            spheres,
+            others,
             #[cfg(feature = "simd")]
             arch: pulp::Arch::new(),
         }
@@ -133,8 +134,8 @@ impl Sweep {
         let flat = self.nearest_flat(ray);
         let mut limit = flat.map_or(f32::INFINITY, |found| found.distance);
         let mut nearest = flat;
-        for &(shape, sphere) in &self.spheres {
-            if let Some(distance) = sphere.intersect(ray, limit) {
+        for &(shape, other) in &self.others {
+            if let Some(distance) = other.intersect(ray, limit) {
                 limit = distance;
                 nearest = Some(Found { shape, distance });
             }
@@ -159,8 +160,8 @@ impl Sweep {
         let flat = self.arch.dispatch(Occluded(flats, ray, limit));
         #[cfg(not(feature = "simd"))]
         let flat = any_occludes(flats, ray, limit);
-        let mut spheres = self.spheres.iter();
-        flat || spheres.any(|(_, sphere)| sphere.intersect(ray, limit).is_some())
+        let mut others = self.others.iter();
+        flat || others.any(|(_, other)| other.intersect(ray, limit).is_some())
     }
 
     /// The nearest flat shape; of several at the same distance the first.

@@ -80,10 +80,8 @@ impl Paths {
             };
             // Emitted light, met by a direction that was drawn at the surface before.
             if let Some(emitter) = vertex.emitter {
-                let shading = || vertex.shading();
-                let emission = scene
-                    .lights()
-                    .emitted(emitter, ray.origin, vertex.place(), shading);
+                let lights = scene.lights();
+                let emission = lights.emitted(emitter, ray.origin, vertex.place());
                 radiance += throughput * emission.radiance * power(density, emission.density);
             }
             if segment >= self.longest {
@@ -136,7 +134,7 @@ impl Paths {
 /// The weight of a sample that was drawn with density `own`, where another technique has the density `other`: the
 /// power heuristic. The density of a direction without alternative is infinite, its weight 1.
 #[inline]
-fn power(own: f32, other: f32) -> f32 {
+pub(super) fn power(own: f32, other: f32) -> f32 {
     #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
     let weight = Heuristic::Power.weight(own.into(), &[other.into()]) as f32;
     weight

@@ -82,6 +82,7 @@ fn mutant_mesh(bytes: &[u8], seed: u64) -> Vec<u8> {
     for _ in 0..=dice.below(8) {
         let at = dice.below(bytes.len());
         match dice.below(6) {
+            _ if bytes.len() < 2 => break,
             0 => bytes.truncate(at.max(1)),
             1 => drop(bytes.remove(at)),
             2 => bytes.insert(at, b"0123456789-.eE \n/"[dice.below(17)]),

@@ -122,7 +122,7 @@ fn mutated_meshes_do_not_panic() {
         (ascii.as_bytes(), MeshFormat::Ply),
         (&binary, MeshFormat::Ply),
     ] {
-        for seed in 0..10 * MUTANTS {
+        for seed in 0..5 * MUTANTS {
             let mesh = MeshFile {
                 file: folder.write("mesh", mutant_mesh(bytes, seed)),
                 format,

@@ -136,7 +136,7 @@ impl Paths {
 /// The weight of a sample that was drawn with density `own`, where another technique has the density `other`: the
 /// power heuristic. The density of a direction without alternative is infinite, its weight 1.
 #[inline]
-fn power(own: f32, other: f32) -> f32 {
+pub(super) fn power(own: f32, other: f32) -> f32 {
     #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
     let weight = Heuristic::Power.weight(own.into(), &[other.into()]) as f32;
     weight

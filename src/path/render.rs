@@ -12,7 +12,7 @@ use super::light::{Environment, Light};
 use super::sensor::Sensor;
 use super::{Paths, Scene};
 use crate::points::pixel;
-use crate::{Error, Estimate, Estimator, Incomplete, Integrand, Sampler, each};
+use crate::{Error, Estimate, Estimator, Incomplete, Integrand, Outcome, Sampler, each};
 
 /// The mean radiance around a pixel, as an integral over the unit cube: two coordinates for the point of the
 /// [film](Filter::sample), those of the [sensor](Sensor::ray), those of the [path](Paths::radiance).
@@ -118,7 +118,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     /// one another, and anybody can compute a pixel again, or go on with it:
     ///
     /// ```
-    /// use estimand::path::{Pixel, scenes};
+    /// use estimand::path::scenes;
     /// use estimand::points::pixel;
     /// use estimand::{Estimator, MonteCarlo};
     ///
@@ -126,15 +126,8 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     /// let (size, [x, y], seed) = ([8, 8], [3, 5], 1);
     /// let picture = view.render(size, seed, |key| MonteCarlo::new(16, key))?;
     ///
-    /// let again = Pixel {
-    ///     scene: &view.scene,
-    ///     sensor: &view.sensor,
-    ///     filter: &view.filter,
-    ///     paths: view.paths,
-    ///     position: [x, y],
-    ///     size,
-    /// };
-    /// let again = MonteCarlo::new(16, pixel::seed([x, y], seed)).estimate(&again)?;
+    /// let again = MonteCarlo::new(16, pixel::seed([x, y], seed));
+    /// let again = again.estimate(&view.pixel([x, y], size))?;
     /// assert_eq!(again.mean, picture.pixels()[(y * size[0] + x) as usize]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -172,6 +165,58 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         estimator: impl Fn(u64) -> T + Sync,
         proceed: impl Fn(u32) -> bool + Sync,
     ) -> Result<Image, Unfinished> {
+        let estimate = |position, key| estimator(key).estimate(&self.pixel(position, size));
+        Image::of_pixels_while(size, seed, estimate, proceed)
+    }
+
+    /// The pixel in column and row `position` of a picture of `size`.
+    pub fn pixel(&self, position: [u32; 2], size: [u32; 2]) -> Pixel<'_, B, L, E, C, F> {
+        Pixel {
+            scene: &self.scene,
+            sensor: &self.sensor,
+            filter: &self.filter,
+            paths: self.paths,
+            position,
+            size,
+        }
+    }
+}
+
+impl Image {
+    /// The picture with whatever `estimate` gives for each pixel, told its column and row and its seed, as
+    /// [`View::render`] has it.
+    ///
+    /// ```
+    /// use estimand::path::{Image, scenes};
+    /// use estimand::{Estimator, MonteCarlo};
+    ///
+    /// // More samples in the middle.
+    /// let (view, size) = (scenes::cornell_box(), [16, 16]);
+    /// let picture = Image::of_pixels(size, 1, |[x, y], key| {
+    ///     let count = if (4..12).contains(&x) && (4..12).contains(&y) { 64 } else { 8 };
+    ///     MonteCarlo::new(count, key).estimate(&view.pixel([x, y], size))
+    /// })?;
+    /// assert_eq!(picture.used(), 64 * 64 + 192 * 8);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`View::render`].
+    pub fn of_pixels(
+        size: [u32; 2],
+        seed: u64,
+        estimate: impl Fn([u32; 2], u64) -> Outcome<Vec3> + Sync,
+    ) -> Result<Self, Unfinished> {
+        Self::of_pixels_while(size, seed, estimate, |_| true)
+    }
+
+    fn of_pixels_while(
+        size: [u32; 2],
+        seed: u64,
+        estimate: impl Fn([u32; 2], u64) -> Outcome<Vec3> + Sync,
+        proceed: impl Fn(u32) -> bool + Sync,
+    ) -> Result<Self, Unfinished> {
         let [width, height] = size;
         if width == 0 || height == 0 {
             let given = format_args!("{width} x {height}");
@@ -188,15 +233,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
             }
             for x in 0..width {
                 let position = [x, y];
-                let integrand = Pixel {
-                    scene: &self.scene,
-                    sensor: &self.sensor,
-                    filter: &self.filter,
-                    paths: self.paths,
-                    position,
-                    size,
-                };
-                match estimator(pixel::seed(position, seed)).estimate(&integrand) {
+                match estimate(position, pixel::seed(position, seed)) {
                     Ok(estimate) => row.push(&estimate),
                     Err(incomplete) => {
                         first_stopped.fetch_min(y, Ordering::Relaxed);
@@ -225,10 +262,10 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
                     reason: incomplete.reason,
                     position: Some(position),
                     so_far: incomplete.so_far,
-                    image: Some(Box::new(Image::of_rows(size, &finished))),
+                    image: Some(Box::new(Self::of_rows(size, &finished))),
                 });
             }
         }
-        Ok(Image::of_rows(size, &finished))
+        Ok(Self::of_rows(size, &finished))
     }
 }

@@ -1,13 +1,15 @@
 //! What is rendered.
 
-use glam::Vec3A;
+use std::sync::Arc;
+
+use glam::{Affine3A, Vec3A};
 
 use super::bsdf::{Bsdf, Material};
 use super::color;
-use super::geometry::{Geometry, Hit};
+use super::geometry::{Copied, Geometry, Hit};
 use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment};
 use super::ray::{Ray, Surface, gamma};
-use super::shape::Primitive;
+use super::shape::{Mesh, Primitive};
 use super::{Detail, Shading};
 use crate::Error;
 
@@ -15,6 +17,7 @@ use crate::Error;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object<B> {
     shapes: Vec<Primitive>,
+    meshes: Vec<Mesh>,
     bsdf: B,
     radiance: Vec3A,
 }
@@ -24,8 +27,17 @@ impl<B> Object<B> {
     pub fn new(shapes: impl IntoIterator<Item = impl Into<Primitive>>, bsdf: impl Into<B>) -> Self {
         Self {
             shapes: shapes.into_iter().map(Into::into).collect(),
+            meshes: Vec::new(),
             bsdf: bsdf.into(),
             radiance: Vec3A::ZERO,
+        }
+    }
+
+    /// A mesh that scatters light as `bsdf` says.
+    pub fn mesh(mesh: Mesh, bsdf: impl Into<B>) -> Self {
+        Self {
+            meshes: vec![mesh],
+            ..Self::new([] as [Primitive; 0], bsdf)
         }
     }
 
@@ -38,6 +50,15 @@ impl<B> Object<B> {
         self.radiance = color::radiance(radiance)?;
         Ok(self)
     }
+}
+
+/// Objects that stand in a scene several times over, each time moved, turned and scaled as a whole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instances<B> {
+    /// What is copied. Nothing of it may emit light.
+    pub objects: Vec<Object<B>>,
+    /// From the coordinates of the objects to those of the scene, for each copy.
+    pub places: Vec<Affine3A>,
 }
 
 /// A scene: shapes, how they scatter light (`B`), which of them emit it (`L`) and what is around them (`E`).
@@ -109,35 +130,107 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
     ///
     /// [`Error::Refused`] if the lights are of a type for more or fewer of them, and for 2^32 shapes or more.
     pub fn new(objects: Vec<Object<B>>, environment: E) -> Result<Self, Error> {
-        let count: usize = objects.iter().map(|object| object.shapes.len()).sum();
-        if u32::try_from(count).is_err() {
-            return Err(Error::refused("number of shapes", "below 2^32", count));
-        }
-        let (mut shapes, mut owners) = (Vec::new(), Vec::new());
-        let (mut bsdfs, mut emitters) = (Vec::new(), Vec::new());
-        for (bsdf, object) in (0..).zip(objects) {
-            bsdfs.push(object.bsdf);
-            for shape in object.shapes {
-                let emitter = if object.radiance == Vec3A::ZERO {
-                    DARK
-                } else {
-                    emitters.push(Emitter {
-                        shape,
-                        radiance: object.radiance,
-                    });
-                    u32::try_from(emitters.len() - 1).unwrap_or(DARK)
-                };
-                shapes.push(shape);
-                owners.push(Owner { bsdf, emitter });
+        Self::with_instances(objects, Vec::new(), environment)
+    }
+
+    /// The same with instances: objects that are stored once and stand in many places.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new); for instances that emit light; and for places that cannot be inverted.
+    pub fn with_instances(
+        objects: Vec<Object<B>>,
+        instances: Vec<Instances<B>>,
+        environment: E,
+    ) -> Result<Self, Error> {
+        let mut parts = Parts::default();
+        let (shapes, meshes) = parts.add(objects)?;
+        let mut copies = Vec::new();
+        for Instances { objects, places } in instances {
+            if objects.iter().any(|object| object.radiance != Vec3A::ZERO) {
+                let given = "one that does";
+                return Err(Error::refused("instance", "one that emits no light", given));
+            }
+            let start = parts.owners.len();
+            let (shapes, meshes) = parts.add(objects)?;
+            let group = Arc::new(Geometry::new(shapes, meshes, Vec::new()));
+            for place in places {
+                copies.push(Copied::new(Arc::clone(&group), start, place)?);
             }
         }
         Ok(Self {
-            geometry: Geometry::new(shapes),
-            owners,
-            bsdfs,
-            lights: L::new(emitters)?,
+            geometry: Geometry::new(shapes, meshes, copies),
+            owners: parts.owners,
+            bsdfs: parts.bsdfs,
+            lights: L::new(parts.emitters)?,
             environment,
         })
+    }
+}
+
+/// What the objects of a scene are made of.
+struct Parts<B> {
+    owners: Vec<Owner>,
+    bsdfs: Vec<B>,
+    emitters: Vec<Emitter>,
+}
+
+impl<B> Default for Parts<B> {
+    fn default() -> Self {
+        Self {
+            owners: Vec::new(),
+            bsdfs: Vec::new(),
+            emitters: Vec::new(),
+        }
+    }
+}
+
+impl<B> Parts<B> {
+    /// The shapes and the meshes of some objects, after their owners were added in this order. Meshes that emit
+    /// light are taken apart, since every triangle of them is a light.
+    fn add(&mut self, objects: Vec<Object<B>>) -> Result<(Vec<Primitive>, Vec<Mesh>), Error> {
+        let (mut shapes, mut meshes, mut owners_of_meshes) = (Vec::new(), Vec::new(), Vec::new());
+        for mut object in objects {
+            let bsdf = index(self.bsdfs.len())?;
+            self.bsdfs.push(object.bsdf);
+            let emits = object.radiance != Vec3A::ZERO;
+            if emits {
+                for mesh in object.meshes.drain(..) {
+                    let flats = (0..mesh.triangles().len()).map(|triangle| mesh.flat(triangle));
+                    object.shapes.extend(flats.map(Primitive::from));
+                }
+            }
+            for mesh in object.meshes {
+                owners_of_meshes.push(Owner {
+                    bsdf,
+                    emitter: DARK,
+                });
+                meshes.push(mesh);
+            }
+            for shape in object.shapes {
+                let emitter = if emits {
+                    self.emitters.push(Emitter {
+                        shape,
+                        radiance: object.radiance,
+                    });
+                    index(self.emitters.len() - 1)?
+                } else {
+                    DARK
+                };
+                shapes.push(shape);
+                self.owners.push(Owner { bsdf, emitter });
+            }
+        }
+        self.owners.append(&mut owners_of_meshes);
+        Ok((shapes, meshes))
+    }
+}
+
+/// An index below 2^32 - 1, which stands for none.
+fn index(index: usize) -> Result<u32, Error> {
+    match u32::try_from(index) {
+        Ok(index) if index != DARK => Ok(index),
+        _ => Err(Error::refused("number of shapes", "below 2^32", index)),
     }
 }
 
@@ -146,7 +239,7 @@ impl<B: Bsdf, L, E> Scene<B, L, E> {
     #[inline]
     pub fn meet(&self, ray: &Ray) -> Option<Vertex<'_, B>> {
         let hit = self.geometry.nearest(ray)?;
-        let owner = self.owners[hit.shape];
+        let owner = self.owners[hit.part];
         let detail = Detail::from_shading(|| self.geometry.shading(&hit));
         Some(Vertex {
             surface: hit.surface.with(detail),

@@ -2,7 +2,7 @@
 
 use super::Found;
 use crate::path::ray::Ray;
-use crate::path::shape::{Flat, Primitive, Shape, Sphere};
+use crate::path::shape::{Flat, Primitive, Shape};
 
 /// The shapes, laid out for vector code.
 ///
@@ -12,7 +12,8 @@ pub(super) struct Sweep {
     flats: Vec<Flats>,
     /// Which shape each of the flats is.
     flat_shapes: Vec<usize>,
-    spheres: Vec<(usize, Sphere)>,
+    /// The shapes that are not flat, and which they are.
+    others: Vec<(usize, Primitive)>,
     #[cfg(feature = "simd")]
     arch: pulp::Arch,
 }
@@ -87,7 +88,7 @@ fn slot(block: f32, lane: usize) -> usize {
 
 impl Sweep {
     pub(super) fn new(shapes: &[Primitive]) -> Self {
-        let (mut flats, mut flat_shapes, mut spheres) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut flats, mut flat_shapes, mut others) = (Vec::new(), Vec::new(), Vec::new());
         for (index, shape) in shapes.iter().enumerate() {
             match shape {
                 Primitive::Flat(flat) => {
@@ -100,13 +101,13 @@ impl Sweep {
                     }
                     flat_shapes.push(index);
                 }
-                Primitive::Sphere(sphere) => spheres.push((index, *sphere)),
+                other => others.push((index, *other)),
             }
         }
         Self {
             flats,
             flat_shapes,
-            spheres,
+            others,
             #[cfg(feature = "simd")]
             arch: pulp::Arch::new(),
         }
@@ -120,8 +121,8 @@ impl Sweep {
         let flat = self.nearest_flat(ray);
         let mut limit = flat.map_or(f32::INFINITY, |found| found.distance);
         let mut nearest = flat;
-        for &(shape, sphere) in &self.spheres {
-            if let Some(distance) = sphere.intersect(ray, limit) {
+        for &(shape, other) in &self.others {
+            if let Some(distance) = other.intersect(ray, limit) {
                 limit = distance;
                 nearest = Some(Found { shape, distance });
             }
@@ -135,8 +136,8 @@ impl Sweep {
         let flat = self.arch.dispatch(Occluded(self, ray, limit));
         #[cfg(not(feature = "simd"))]
         let flat = self.flat_occludes(ray, limit);
-        let mut spheres = self.spheres.iter();
-        flat || spheres.any(|(_, sphere)| sphere.intersect(ray, limit).is_some())
+        let mut others = self.others.iter();
+        flat || others.any(|(_, other)| other.intersect(ray, limit).is_some())
     }
 
     /// The nearest flat shape; of several at the same distance the first.

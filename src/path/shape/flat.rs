@@ -1,6 +1,6 @@
 //! Triangles and parallelograms.
 
-use glam::{Vec2, Vec3A};
+use glam::{Vec2, Vec2Swizzles, Vec3A};
 
 use super::{Shape, density_of_area};
 use crate::Error;
@@ -33,6 +33,8 @@ pub struct Flat {
     inset: [f32; 2],
     margin: f32,
     area: f32,
+    /// Whether the edges have changed places, which texture coordinates do not follow.
+    turned: bool,
 }
 
 impl Flat {
@@ -107,6 +109,7 @@ impl Flat {
             inset,
             margin,
             area: single(area),
+            turned: false,
         })
     }
 
@@ -121,7 +124,7 @@ impl Flat {
         }
     }
 
-    /// The same points with the outer side on the other side.
+    /// The same points with the outer side on the other side, and the same texture coordinates.
     #[must_use]
     pub fn turned(self) -> Self {
         Self {
@@ -132,6 +135,7 @@ impl Flat {
             second_dual: self.first_dual,
             slack: [self.slack[1], self.slack[0]],
             inset: [self.inset[1], self.inset[0]],
+            turned: !self.turned,
             ..self
         }
     }
@@ -192,11 +196,17 @@ impl Shape for Flat {
     #[inline]
     fn shading(&self, surface: &Surface) -> Shading {
         let inside = surface.point - self.corner;
+        let uv = Vec2::new(inside.dot(self.first_dual), inside.dot(self.second_dual));
+        let (uv, du, dv) = if self.turned {
+            (uv.yx(), self.second_edge, self.first_edge)
+        } else {
+            (uv, self.first_edge, self.second_edge)
+        };
         Shading {
-            uv: Vec2::new(inside.dot(self.first_dual), inside.dot(self.second_dual)),
+            uv,
             normal: self.normal,
-            du: self.first_edge,
-            dv: self.second_edge,
+            du,
+            dv,
         }
     }
 

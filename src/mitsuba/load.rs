@@ -13,7 +13,6 @@ use super::sensor::Projection;
 use super::{Description, SceneError, Sensor, Techniques};
 use crate::Error;
 use crate::path::bsdf::{Lambertian, Material};
-use crate::path::filter::BoxFilter;
 use crate::path::light::{
     AreaLights, Background, Constant, Environment, Light, NoEnvironment, NoLight, Surroundings,
 };
@@ -63,7 +62,11 @@ impl Description {
         let mut left_out = needs.left_out();
         left_out.extend(pieces.left_out.iter().cloned());
         left_out.extend(surroundings.left_out.iter().cloned());
-        left_out.extend(self.unused.iter().map(|place| format!("{} at {place}", place.element())));
+        left_out.extend(
+            self.unused
+                .iter()
+                .map(|place| format!("{} at {place}", place.element())),
+        );
         let crop = self.sensors[0].film.crop;
         let plan = Plan {
             description: self,
@@ -116,7 +119,9 @@ impl Plan<'_> {
             };
         }
         match (background, self.needs.area_lights) {
-            (Background::Constant(constant), true) => self.view::<B, AreaLights, Constant>(constant),
+            (Background::Constant(constant), true) => {
+                self.view::<B, AreaLights, Constant>(constant)
+            }
             (Background::Constant(constant), false) => self.view::<B, NoLight, Constant>(constant),
             _ => self.view::<B, AreaLights, _>(NoEnvironment),
         }
@@ -143,8 +148,8 @@ impl Plan<'_> {
         let refused = |e: Error| place.error(e);
         let needs = self.needs;
         let (objects, instances) = objects::<B>(self.pieces)?;
-        let scene = Scene::<B, L, E>::with_instances(objects, instances, environment)
-            .map_err(refused)?;
+        let scene =
+            Scene::<B, L, E>::with_instances(objects, instances, environment).map_err(refused)?;
         Ok(match (camera, filter) {
             (Camera::Pinhole(sensor), AnyFilter::Box(filter)) if !needs.camera => Box::new(View {
                 scene,
@@ -213,8 +218,9 @@ impl Plan<'_> {
             ));
         }
         if integrator.techniques == Techniques::Emitters && needs::has_delta(self.description) {
-            return Err(place
-                .error("without `bsdf_samples` mirrors and glass would be black; leave them at 1"));
+            return Err(place.error(
+                "without `bsdf_samples` mirrors and glass would be black; leave them at 1",
+            ));
         }
         let paths = Paths::default().roulette_from(integrator.rr_depth);
         match integrator.max_depth {
@@ -226,9 +232,7 @@ impl Plan<'_> {
 
 /// The objects of a scene, and those that stand in it many times over.
 #[expect(clippy::type_complexity, reason = "two lists, for one call")]
-fn objects<B: Make>(
-    pieces: Pieces<'_>,
-) -> Result<(Vec<Object<B>>, Vec<Instances<B>>), SceneError> {
+fn objects<B: Make>(pieces: Pieces<'_>) -> Result<(Vec<Object<B>>, Vec<Instances<B>>), SceneError> {
     let mut images = Images::default();
     let mut object = |solid: Solid<'_>| {
         let shape = solid.shape;

@@ -188,7 +188,12 @@ fn primitives(geometry: &Geometry, to_world: &DMat4) -> Result<Vec<Primitive>, S
                 sphere.with_axes(start.as_vec3a(), pole.as_vec3a())
             })
             .map_err(refused)?;
-            if flip_normals { sphere.turned() } else { sphere }.into()
+            if flip_normals {
+                sphere.turned()
+            } else {
+                sphere
+            }
+            .into()
         }
         Geometry::Cylinder {
             p0,

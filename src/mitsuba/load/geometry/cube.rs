@@ -22,8 +22,8 @@ pub(super) fn sides(to_world: &DMat4, flip_normals: bool) -> Result<Vec<Primitiv
     let side = |side: [[f64; 3]; 3]| {
         let [corner, u, v] = side.map(|point| to_world.transform_point3(DVec3::from(point)));
         let (u, v) = (u - corner, v - corner);
-        let flat = Flat::parallelogram(narrow(corner), narrow(u), narrow(v))
-            .map_err(|e| e.to_string())?;
+        let flat =
+            Flat::parallelogram(narrow(corner), narrow(u), narrow(v)).map_err(|e| e.to_string())?;
         let outward = corner + 0.5 * (u + v) - center;
         let turned = (u.cross(v).dot(outward) < 0.0) != flip_normals;
         Ok(if turned { flat.turned() } else { flat }.into())

@@ -40,8 +40,8 @@ pub(super) fn place(mesh: Mesh, file: &MeshFile, to_world: &DMat4) -> Result<Bod
     };
     let smooth = is_smooth(&moved, &normals, &triangles);
     let refused = |e: crate::Error| e.to_string();
-    let mut mesh = shape::Mesh::new(moved.into_iter().map(narrow).collect(), triangles)
-        .map_err(refused)?;
+    let mut mesh =
+        shape::Mesh::new(moved.into_iter().map(narrow).collect(), triangles).map_err(refused)?;
     if smooth {
         mesh = mesh
             .with_normals(normals.into_iter().map(narrow).collect())

@@ -53,7 +53,8 @@ impl Plan {
         seconds: f64,
         noise: Option<f64>,
     ) -> Option<u64> {
-        let doubled = done.clamp(1, MOST);
+        // A power of two, so that passes are nets.
+        let doubled = 1 << done.clamp(1, MOST).ilog2();
         match self {
             Self::Samples(samples) => samples.get(usize::try_from(passes).ok()?).copied(),
             Self::Noise(target) => {
@@ -66,7 +67,6 @@ impl Plan {
                     return Some(1);
                 }
                 let fitting = left * done as f64 / seconds.max(1e-9);
-                // A power of two, so that passes are nets.
                 let mut samples = doubled;
                 while samples > 1 && samples as f64 > fitting {
                     samples /= 2;

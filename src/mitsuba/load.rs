@@ -123,7 +123,8 @@ impl Plan<'_> {
                 self.view::<B, AreaLights, Constant>(constant)
             }
             (Background::Constant(constant), false) => self.view::<B, NoLight, Constant>(constant),
-            _ => self.view::<B, AreaLights, _>(NoEnvironment),
+            (_, true) => self.view::<B, AreaLights, _>(NoEnvironment),
+            (_, false) => self.view::<B, NoLight, _>(NoEnvironment),
         }
     }
 

@@ -162,7 +162,7 @@ impl Job<'_> {
             let word = hash::hash(self.seed, path);
             let position = [(word, 0), (word >> 32, 1)].map(|(word, axis)| {
                 let size = u64::from(self.size[axis]);
-                u32::try_from((word & 0xffff_ffff) * size >> 32).expect("below the size")
+                u32::try_from(((word & 0xffff_ffff) * size) >> 32).expect("below the size")
             });
             let points = Points::Independent.of_pixel(position, word, 1);
             let points = points.expect("independent points are never refused");

@@ -10,6 +10,7 @@ use std::fmt;
 
 use super::picture::Picture;
 use super::sensor::Projection;
+use super::texture as described;
 use super::{Description, SceneError, Sensor, Techniques};
 use crate::Error;
 use crate::path::bsdf::{Lambertian, Material};
@@ -21,7 +22,7 @@ use crate::path::texture::{Texture, Uniform};
 use crate::path::{Instances, Object, Paths, Scene, View};
 use filter::AnyFilter;
 use geometry::{Pieces, Solid};
-use material::{Images, Make};
+use material::{Images, Make, Value};
 use needs::Needs;
 
 /// Which type a scene is loaded as.
@@ -242,9 +243,15 @@ fn objects<B: Make>(pieces: Pieces<'_>) -> Result<(Vec<Object<B>>, Vec<Instances
         let object = solid.surface.object(bsdf);
         match solid.radiance {
             None => Ok(object),
-            Some(radiance) => object
-                .emitting(radiance)
+            Some(described::Texture::Constant(radiance)) => object
+                .emitting(surroundings::narrow(*radiance))
                 .map_err(|e| refused(e.to_string())),
+            Some(picture) => {
+                let picture = Value::value(picture, &mut images).map_err(refused)?;
+                object
+                    .emitting_picture(picture)
+                    .map_err(|e| refused(e.to_string()))
+            }
         }
     };
     let objects = pieces

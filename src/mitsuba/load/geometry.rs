@@ -29,7 +29,7 @@ pub(super) struct Solid<'a> {
     pub(super) shape: &'a Shape,
     pub(super) surface: Body,
     /// `None` if it emits nothing.
-    pub(super) radiance: Option<[f32; 3]>,
+    pub(super) radiance: Option<&'a Texture>,
 }
 
 /// Shapes that stand in a scene many times over.
@@ -126,16 +126,10 @@ impl<'a> Solid<'a> {
                 primitives(geometry, &shape.to_world).map_err(|e| shape.place.error(e))?,
             ),
         };
-        let radiance = match &shape.radiance {
-            None => None,
-            Some(Texture::Constant(radiance)) if *radiance == DVec3::ZERO => None,
-            Some(Texture::Constant(radiance)) => Some(narrow(*radiance)),
-            Some(_) => {
-                return Err(shape
-                    .place
-                    .error("an area light with a texture is not supported; give it one radiance"));
-            }
-        };
+        let radiance = shape
+            .radiance
+            .as_ref()
+            .filter(|&radiance| *radiance != Texture::Constant(DVec3::ZERO));
         Ok(Some(Self {
             shape,
             surface,

@@ -35,12 +35,34 @@ impl Choice {
 }
 
 impl AreaLights {
+    /// No lights.
+    pub(super) const NONE: Self = Self {
+        emitters: Vec::new(),
+        choices: Vec::new(),
+    };
+
+    /// The probability with which an emitter is chosen.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn probability(&self, emitter: u32) -> f32 {
+        self.choices[emitter as usize].times(1.0)
+    }
+
+    /// What an emitter emits, if it is the same everywhere.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn radiance(&self, emitter: u32) -> Option<Vec3A> {
+        let emitter = &self.emitters[emitter as usize];
+        emitter.picture.is_none().then_some(emitter.radiance)
+    }
+
     /// Which emitter the coordinate chooses, and what is left of the coordinate.
     #[inline]
-    fn choose(&self, u: f64) -> (usize, f64) {
+    pub(in crate::path) fn choose(&self, u: f64) -> (usize, f64) {
         let [_, rest @ ..] = &self.choices[..] else {
             return (0, u);
         };
+        if rest.is_empty() {
+            return (0, u);
+        }
         let chosen = rest.partition_point(|choice| choice.before <= u);
         let Choice {
             probability,
@@ -74,6 +96,10 @@ impl Light for AreaLights {
         Ok(Self { emitters, choices })
     }
 
+    fn as_area_lights(&self) -> Option<&Self> {
+        Some(self)
+    }
+
     #[inline]
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
         let [a, b] = u.next_2d();
@@ -87,7 +113,7 @@ impl Light for AreaLights {
         }
         Some(Illumination {
             way: Segment::between(from, &there)?,
-            weight: emitter.radiance_at(&there) / density,
+            weight: emitter.radiance_at(&there) * density.recip(),
             density,
         })
     }

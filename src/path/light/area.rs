@@ -8,7 +8,7 @@ use crate::path::shape::Shape;
 use crate::path::{Segment, Surface};
 use crate::{Error, Sampler};
 
-/// Shapes that emit light from their outer sides.
+/// Shapes that emit light from their outer sides; none at all is a number too.
 ///
 /// Two coordinates draw a point, however many shapes there are: the first also chooses the shape, in
 /// proportion to its power, and what is left of it is a coordinate again.
@@ -75,7 +75,7 @@ impl AreaLights {
 impl Light for AreaLights {
     fn new(emitters: Vec<Emitter>) -> Result<Self, Error> {
         let total: f64 = emitters.iter().map(Emitter::power).sum();
-        if !(total > 0.0 && total.is_finite()) {
+        if !(emitters.is_empty() || total > 0.0 && total.is_finite()) {
             return Err(Error::refused(
                 "power of all lights together",
                 "positive and finite",
@@ -104,7 +104,7 @@ impl Light for AreaLights {
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
         let [a, b] = u.next_2d();
         let (chosen, a) = self.choose(a);
-        let emitter = &self.emitters[chosen];
+        let emitter = self.emitters.get(chosen)?;
         let there = emitter.shape.sample(from.point, singles([a, b]));
         let density = self.choices[chosen].times(emitter.shape.density(from.point, &there));
         let lit = there.normal.dot(from.point - there.point) > 0.0;

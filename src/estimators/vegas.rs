@@ -110,8 +110,6 @@ impl Vegas {
     ///
     /// [`Error::Refused`] for no dimensions, and for fewer than 40 evaluations.
     pub fn new(dimensions: u32, count: u64, seed: u64) -> Result<Self, Error> {
-        /// Points a bin and iteration, about.
-        const FILL: u64 = 20;
         if dimensions == 0 {
             let domain = "at least 1";
             return Err(Error::refused("number of dimensions", domain, dimensions));
@@ -121,7 +119,8 @@ impl Vegas {
         }
         let iterations = (count / ENOUGH).clamp(2, 10) as u32;
         let each = count / u64::from(iterations);
-        let bins = usize::try_from(each / FILL).unwrap_or(usize::MAX);
+        // Narrow bins follow the integrand, wide ones have many points to learn from: as many points a bin as bins.
+        let bins = usize::try_from(each.isqrt()).unwrap_or(usize::MAX);
         Ok(Self {
             count,
             iterations,
@@ -371,7 +370,10 @@ impl Progressive for Vegas {
                 used: points,
                 training: iterations.len() < self.training(),
             });
-            adaptation.learn(&pass, self.damping, self.each());
+            // The first half of the iterations finds the place, a half of the way each; the others average what they
+            // learn.
+            let settled = iterations.len().saturating_sub(self.training()) + 2;
+            adaptation.learn(&pass, self.damping / settled as f64, self.each());
         }
         Ok(())
     }

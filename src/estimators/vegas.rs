@@ -18,7 +18,8 @@ use adaptation::Adaptation;
 /// Adaptive integration of peaked and badly scaled integrands: an [`ImportanceMap`] that learns from iteration to
 /// iteration, and a grid of strata whose numbers of points follow their variances.[^lepage]
 ///
-/// The first half of the iterations only trains and is then forgotten. The others go on learning; each is unbiased whatever was
+/// The first half of the iterations only trains and is then forgotten. The others go on learning, each less than
+/// the one before, so that what they learn is averaged; each is unbiased whatever was
 /// learned before it, and their mean is weighted by their numbers of points, not by their claimed errors, which would
 /// bias it.
 ///
@@ -152,7 +153,7 @@ impl Vegas {
         self
     }
 
-    /// The same with another exponent of damping in `[0, 2]`: 0 learns nothing, the default is 0.5.
+    /// The same with another exponent of damping in `[0, 2]`: 0 learns nothing, the default is 0.5, much more than 1 swings.
     ///
     /// # Errors
     ///

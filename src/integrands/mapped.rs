@@ -102,7 +102,8 @@ impl ImportanceMap {
     }
 
     /// Moves the ends of the bins so that each holds the same part of `weights`, the mean square of the integrand in each bin,
-    /// as far as `damping` lets it: shares follow the weights to this power, at once where it is 1/2, and not at all at 0. Weights that are all zero or not finite change nothing.
+    /// as far as `damping` lets it: shares follow the weights to this power, all the way at 1/2, and not at all at 0. Weights
+    /// that are all zero or not finite change nothing.
     ///
     /// In the long run no bin is more than twice as wide as its neighbours.
     pub(crate) fn refine(&mut self, weights: &[Vec<f64>], damping: f64) {

@@ -137,6 +137,7 @@ fn name(warning: Warning) -> &'static str {
         Warning::HeavyTail { .. } => "heavy tail",
         Warning::SmallSample { .. } => "small sample",
         Warning::FewReplicates { .. } => "few replicates",
+        Warning::Tied { .. } => "replicates tied",
         Warning::Rejected { .. } => "values rejected",
         Warning::Rounding { .. } => "rounding",
         Warning::Inconsistent { .. } => "iterations contradict",

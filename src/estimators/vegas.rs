@@ -23,7 +23,8 @@ use adaptation::{Adaptation, Pass};
 /// which would bias it. An estimate that is stopped before is made of what training iterations there are.
 ///
 /// A peak that no point of the first iterations hits is not there for it: the estimate then comes with
-/// [`Warning::NoSpread`] or [`Warning::FewValues`]. Peaks along diagonals gain little. For smooth
+/// [`Warning::NoSpread`] or [`Warning::FewValues`]. Peaks along diagonals gain little. The maps of all axes are learned with
+/// some noise, which multiplies: in hundreds of dimensions they do more harm than good. For smooth
 /// integrands a trained map under scrambled nets ([`Mapped`](crate::integrands::Mapped)) is better by far.
 ///
 /// Below 1000 evaluations the variances of the strata are known from too few points: intervals hold the integral less often

@@ -27,6 +27,7 @@
 //! |---|---|
 //! | [`View`] | scene, camera and paths: what a picture is taken of |
 //! | [`Scene`], [`Object`] | shapes, and what they do to light |
+//! | [`texture`] | what varies over a surface |
 //! | [`shape`], [`bsdf`], [`light`], [`sensor`], [`filter`] | one kind of shape, scattering, source, camera and filter a file |
 //! | [`Paths::radiance`] | the rendering equation |
 //! | [`Recursive`] | the same as it is taught, to be compared with |
@@ -39,7 +40,7 @@
 //! - Geometry is in `f32`: coordinates are known to 6e-8 of themselves. Rays leave surfaces by a bound of the rounding
 //!   errors, which scales and moves with the scene; two surfaces nearer to one another than about 1e-6 of
 //!   their coordinates are not told apart. A scene may be of any size between 1e-10 and 1e10.
-//! - Colour is linear red, green and blue. No media, no textures, no spectra.
+//! - Colour is linear red, green and blue. No media, no spectra.
 //! - Boxes around many shapes come from the crate `obvhs`; up to 48 shapes are swept over instead.
 
 mod adaptive;
@@ -51,6 +52,7 @@ mod geometry;
 pub mod image;
 pub mod light;
 mod pictures;
+mod place;
 mod radiance;
 mod ray;
 mod recursive;
@@ -60,10 +62,13 @@ pub mod scenes;
 pub mod sensor;
 mod shading;
 pub mod shape;
+pub mod texture;
 
 pub use adaptive::{Adapted, Adaptive};
+pub use frame::Frame;
 pub use image::Image;
 pub use pictures::Pictures;
+pub use place::{Place, Spot};
 pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
 pub use recursive::{Direct, Ending, Recursive, RecursivePixel};

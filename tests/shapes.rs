@@ -9,6 +9,7 @@ use estimand::path::filter::BoxFilter;
 use estimand::path::light::{AreaLights, Constant, NoEnvironment, NoLight};
 use estimand::path::sensor::Pinhole;
 use estimand::path::shape::{Cylinder, Disk, Flat, Mesh, Primitive, Shape, Sphere, cuboid};
+use estimand::path::texture::{Bitmap, Filter, Texture};
 use estimand::path::{Instances, Object, Paths, Ray, Scene, Surface, View};
 use estimand::points::{HashedOwen, PointSet, Sobol};
 use estimand::{Average, Sampler};
@@ -449,4 +450,69 @@ fn instances_that_emit_or_cannot_be_inverted_are_refused() {
         .is_err()
     );
     assert!(with(instances(ball(), Affine3A::IDENTITY)).is_ok());
+}
+
+/// A floor under a light whose left half is dark, by a picture and by two shapes.
+#[test]
+fn a_picture_shines_where_it_is_bright() {
+    let floor = || {
+        let floor = Flat::parallelogram([-2.0, 0.0, -2.0], [0.0, 0.0, 4.0], [4.0, 0.0, 0.0]);
+        Object::new([floor.unwrap()], white())
+    };
+    let texels = vec![0.2, 0.4, 0.6, 4.0, 3.0, 2.0];
+    let picture = || -> Texture {
+        Bitmap::new(2, 3, texels.clone())
+            .unwrap()
+            .filtered(Filter::Nearest)
+            .into()
+    };
+    let half = |x: f32, radiance: [f32; 3]| {
+        let flat = Flat::parallelogram([x, 1.5, -0.5], [0.5, 0.0, 0.0], [0.0, 0.0, 1.0]);
+        Object::new([flat.unwrap()], white())
+            .emitting(radiance)
+            .unwrap()
+    };
+    let corner = [-0.5, 1.5, -0.5];
+    let flat = Flat::parallelogram(corner, [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]).unwrap();
+    let vertices = vec![corner, [0.5, 1.5, -0.5], [0.5, 1.5, 0.5], [-0.5, 1.5, 0.5]];
+    let uvs = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let mesh = Mesh::new(vertices, vec![[0, 1, 2], [0, 2, 3]])
+        .unwrap()
+        .with_uvs(uvs)
+        .unwrap();
+    let render = |lights: Vec<Object<Lambertian>>| {
+        let objects = lights.into_iter().chain([floor()]).collect();
+        let view = View::<Lambertian, AreaLights, _, _> {
+            scene: Scene::new(objects, NoEnvironment).unwrap(),
+            sensor: Pinhole::look_at([0.0, 1.2, 3.0], [0.0, 0.5, 0.0], [0.0, 1.0, 0.0], 60.0, 1.0)
+                .unwrap(),
+            filter: BoxFilter,
+            paths: Paths::default(),
+        };
+        view.render([12, 12], 1, |seed| {
+            Average::new(
+                Sobol::new(16).unwrap().scrambled(HashedOwen { seed }),
+                1 << 12,
+            )
+        })
+        .unwrap()
+    };
+    let expected = render(vec![
+        half(-0.5, [0.2, 0.4, 0.6]),
+        half(0.0, [4.0, 3.0, 2.0]),
+    ]);
+    for shape in [Object::new([flat], white()), Object::mesh(mesh, white())] {
+        let ours = render(vec![shape.emitting_picture(picture()).unwrap()]);
+        let off = (ours.mean() / expected.mean() - 1.0).abs().max_element();
+        assert!(off < 2e-3, "{off}");
+        for (ours, expected) in ours.pixels().iter().zip(expected.pixels()) {
+            let off = (*ours - *expected).abs().max_element();
+            assert!(
+                off < 0.03 * expected.max_element() + 1e-3,
+                "{ours} {expected}"
+            );
+        }
+    }
+    let negative = Bitmap::new(1, 1, vec![-1.0]).unwrap();
+    assert!(floor().emitting_picture(negative.into()).is_err());
 }

@@ -80,10 +80,8 @@ impl Paths {
             };
             // Emitted light, met by a direction that was drawn at the surface before.
             if let Some(emitter) = vertex.emitter {
-                let shading = || vertex.shading();
-                let emission = scene
-                    .lights()
-                    .emitted(emitter, ray.origin, vertex.place(), shading);
+                let lights = scene.lights();
+                let emission = lights.emitted(emitter, ray.origin, vertex.place());
                 radiance += throughput * emission.radiance * power(density, emission.density);
             }
             if segment >= self.longest {

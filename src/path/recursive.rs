@@ -145,9 +145,8 @@ impl Recursive {
         };
         let mut radiance = Vec3A::ZERO;
         if let Some(emitter) = vertex.emitter {
-            let shading = || vertex.shading();
             let lights = scene.lights();
-            let emission = lights.emitted(emitter, ray.origin, vertex.place(), shading);
+            let emission = lights.emitted(emitter, ray.origin, vertex.place());
             radiance += emission.radiance * met(emission.density);
         }
         let mut sum = branch.throughput * radiance;

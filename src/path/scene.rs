@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Vec3A};
+use glam::{Affine2, Affine3A, Mat2, Vec3A};
 
 use super::bsdf::{Bsdf, Material};
 use super::color;
 use super::geometry::{Copied, Geometry, Hit};
-use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment};
+use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment, Picture};
 use super::ray::{Ray, Surface, gamma};
 use super::shape::{Mesh, Primitive};
+use super::texture::{self, Parameter, Texture};
 use super::{Detail, Shading};
 use crate::Error;
 
@@ -19,7 +20,37 @@ pub struct Object<B> {
     shapes: Vec<Primitive>,
     meshes: Vec<Mesh>,
     bsdf: B,
-    radiance: Vec3A,
+    radiance: Radiance,
+}
+
+/// What an object emits.
+#[derive(Clone, Debug, PartialEq)]
+enum Radiance {
+    Nothing,
+    Uniform(Vec3A),
+    Picture(Texture),
+}
+
+impl Radiance {
+    /// The shape that emits it, given the way from the shape's texture coordinates to those of a picture.
+    fn emitter(&self, shape: Primitive, place: Affine2) -> Emitter {
+        let (radiance, picture) = match self {
+            Self::Nothing => (Vec3A::ZERO, None),
+            Self::Uniform(radiance) => (*radiance, None),
+            Self::Picture(texture) => {
+                let texture = texture.clone();
+                (
+                    Vec3A::splat(texture.mean()),
+                    Some(Picture { texture, place }),
+                )
+            }
+        };
+        Emitter {
+            shape,
+            radiance,
+            picture,
+        }
+    }
 }
 
 impl<B> Object<B> {
@@ -29,7 +60,7 @@ impl<B> Object<B> {
             shapes: shapes.into_iter().map(Into::into).collect(),
             meshes: Vec::new(),
             bsdf: bsdf.into(),
-            radiance: Vec3A::ZERO,
+            radiance: Radiance::Nothing,
         }
     }
 
@@ -47,7 +78,28 @@ impl<B> Object<B> {
     ///
     /// [`Error::Refused`] for a component that is negative or not finite.
     pub fn emitting(mut self, radiance: [f32; 3]) -> Result<Self, Error> {
-        self.radiance = color::radiance(radiance)?;
+        let radiance = color::radiance(radiance)?;
+        self.radiance = if radiance == Vec3A::ZERO {
+            Radiance::Nothing
+        } else {
+            Radiance::Uniform(radiance)
+        };
+        Ok(self)
+    }
+
+    /// The same, emitting light that varies over its shapes: `radiance` at their texture coordinates.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for a texture with a component that is negative or not finite.
+    pub fn emitting_picture(mut self, radiance: Texture) -> Result<Self, Error> {
+        self.radiance = match texture::finite("radiance", radiance)? {
+            Texture::Uniform(uniform) => {
+                return self.emitting(uniform.color(&()).to_array());
+            }
+            picture if picture.range()[1] > 0.0 => Radiance::Picture(picture),
+            _ => Radiance::Nothing,
+        };
         Ok(self)
     }
 }
@@ -147,7 +199,10 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
         let (shapes, meshes) = parts.add(objects)?;
         let mut copies = Vec::new();
         for Instances { objects, places } in instances {
-            if objects.iter().any(|object| object.radiance != Vec3A::ZERO) {
+            if objects
+                .iter()
+                .any(|object| object.radiance != Radiance::Nothing)
+            {
                 let given = "one that does";
                 return Err(Error::refused("instance", "one that emits no light", given));
             }
@@ -193,32 +248,34 @@ impl<B> Parts<B> {
         for mut object in objects {
             let bsdf = index(self.bsdfs.len())?;
             self.bsdfs.push(object.bsdf);
-            let emits = object.radiance != Vec3A::ZERO;
-            if emits {
-                for mesh in object.meshes.drain(..) {
-                    let flats = (0..mesh.triangles().len()).map(|triangle| mesh.flat(triangle));
-                    object.shapes.extend(flats.map(Primitive::from));
-                }
+            let dark = Owner {
+                bsdf,
+                emitter: DARK,
+            };
+            if object.radiance == Radiance::Nothing {
+                owners_of_meshes.resize(owners_of_meshes.len() + object.meshes.len(), dark);
+                meshes.append(&mut object.meshes);
+                self.owners
+                    .resize(self.owners.len() + object.shapes.len(), dark);
+                shapes.append(&mut object.shapes);
+                continue;
             }
-            for mesh in object.meshes {
-                owners_of_meshes.push(Owner {
-                    bsdf,
-                    emitter: DARK,
-                });
-                meshes.push(mesh);
-            }
-            for shape in object.shapes {
-                let emitter = if emits {
-                    self.emitters.push(Emitter {
-                        shape,
-                        radiance: object.radiance,
-                    });
-                    index(self.emitters.len() - 1)?
-                } else {
-                    DARK
-                };
-                shapes.push(shape);
+            let whole = object
+                .shapes
+                .into_iter()
+                .map(|shape| (shape, Affine2::IDENTITY));
+            let triangles = object.meshes.iter().flat_map(|mesh| {
+                (0..mesh.triangles().len()).map(|triangle| {
+                    let [a, b, c] = mesh.uvs(triangle);
+                    let place = Affine2::from_mat2_translation(Mat2::from_cols(b - a, c - a), a);
+                    (mesh.flat(triangle).into(), place)
+                })
+            });
+            for (shape, place) in whole.chain(triangles) {
+                let emitter = index(self.emitters.len())?;
+                self.emitters.push(object.radiance.emitter(shape, place));
                 self.owners.push(Owner { bsdf, emitter });
+                shapes.push(shape);
             }
         }
         self.owners.append(&mut owners_of_meshes);

@@ -343,7 +343,7 @@ fn next_event(studio: &Studio<'_>) -> Result<Vec<Claim>, Failure> {
     Ok(vec![Claim {
         claim: "Next-event estimation converges faster than light met by chance.".into(),
         measured: format!(
-            "without it variance × {}, time × {}, time to a given error × {}; both errors fall as the root of the number of samples",
+            "without it variance × {}, time × {}, time to a given error × {}: a constant factor, since independent samples converge as the root of their number either way",
             noise.text(),
             time.text(),
             work.text()

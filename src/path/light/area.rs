@@ -5,7 +5,7 @@ use glam::Vec3A;
 use super::{Emission, Emitter, Illumination, Light};
 use crate::path::frame::singles;
 use crate::path::shape::Shape;
-use crate::path::{Segment, Shading, Surface};
+use crate::path::{Segment, Surface};
 use crate::{Error, Sampler};
 
 /// Shapes that emit light from their outer sides.
@@ -52,11 +52,7 @@ impl AreaLights {
 
 impl Light for AreaLights {
     fn new(emitters: Vec<Emitter>) -> Result<Self, Error> {
-        let power = |emitter: &Emitter| {
-            let radiance = emitter.radiance.as_dvec3();
-            f64::from(emitter.shape.area()) * radiance.element_sum()
-        };
-        let total: f64 = emitters.iter().map(power).sum();
+        let total: f64 = emitters.iter().map(Emitter::power).sum();
         if !(total > 0.0 && total.is_finite()) {
             return Err(Error::refused(
                 "power of all lights together",
@@ -67,7 +63,7 @@ impl Light for AreaLights {
         let choices = emitters
             .iter()
             .scan(0.0, |sum, emitter| {
-                let (before, probability) = (*sum, power(emitter) / total);
+                let (before, probability) = (*sum, emitter.power() / total);
                 *sum += probability;
                 Some(Choice {
                     probability,
@@ -82,33 +78,30 @@ impl Light for AreaLights {
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
         let [a, b] = u.next_2d();
         let (chosen, a) = self.choose(a);
-        let Emitter { shape, radiance } = &self.emitters[chosen];
-        let there = shape.sample(from.point, singles([a, b]));
-        let density = self.choices[chosen].times(shape.density(from.point, &there));
+        let emitter = &self.emitters[chosen];
+        let there = emitter.shape.sample(from.point, singles([a, b]));
+        let density = self.choices[chosen].times(emitter.shape.density(from.point, &there));
         let lit = there.normal.dot(from.point - there.point) > 0.0;
         if !(lit && density > 0.0 && density < f32::MAX) {
             return None;
         }
         Some(Illumination {
             way: Segment::between(from, &there)?,
-            weight: *radiance / density,
+            weight: emitter.radiance_at(&there) / density,
             density,
         })
     }
 
     #[inline]
-    fn emitted(
-        &self,
-        emitter: u32,
-        from: Vec3A,
-        surface: &Surface,
-        _: impl FnOnce() -> Shading,
-    ) -> Emission {
-        let Emitter { shape, radiance } = &self.emitters[emitter as usize];
-        let lit = surface.normal.dot(from - surface.point) > 0.0;
+    fn emitted(&self, emitter: u32, from: Vec3A, surface: &Surface) -> Emission {
+        let choice = self.choices[emitter as usize];
+        let emitter = &self.emitters[emitter as usize];
+        if surface.normal.dot(from - surface.point) <= 0.0 {
+            return Emission::NONE;
+        }
         Emission {
-            radiance: if lit { *radiance } else { Vec3A::ZERO },
-            density: self.choices[emitter as usize].times(shape.density(from, surface)),
+            radiance: emitter.radiance_at(surface),
+            density: choice.times(emitter.shape.density(from, surface)),
         }
     }
 }

@@ -83,7 +83,7 @@ pub use padded::Padded;
 pub use radical_inverse::radical_inverse;
 pub use rescrambled::Rescrambled;
 pub use scramble::{
-    BinaryScramble, Columns, DigitPermutation, DigitScramble, DigitalShift, HashedOwen,
+    BinaryScramble, Columns, DigitOrder, DigitPermutation, DigitScramble, DigitalShift, HashedOwen,
     LinearMatrix, Owen, Plain,
 };
 pub use shifted::Shifted;

@@ -1,6 +1,6 @@
-//! Checks of colours: linear red, green and blue.
+//! Colours: linear red, green and blue.
 
-use glam::Vec3A;
+use glam::{Vec3, Vec3A};
 
 use crate::Error;
 
@@ -30,4 +30,9 @@ fn within(
     } else {
         Err(Error::refused(name, domain, format_args!("{rgb:?}")))
     }
+}
+
+/// The luminance of linear sRGB, as ITU-R BT.709 weighs it.
+pub(in crate::path) fn luminance(rgb: Vec3) -> f64 {
+    0.2126 * f64::from(rgb.x) + 0.7152 * f64::from(rgb.y) + 0.0722 * f64::from(rgb.z)
 }

@@ -4,12 +4,30 @@
 //! to the filter's absolute value, for each pixel of its own:[^ernst] so a pixel is one integral whatever the filter, and
 //! pixels are independent of one another.
 //!
+//! | filter | reaches |
+//! |---|---|
+//! | [`BoxFilter`] | its own pixel |
+//! | [`Centre`] | nothing but a point: to be compared with |
+//! | [`Separable`] with [`Tent`], [`Gaussian`], [`Mitchell`], [`Lanczos`] or a [`Profile`] of one's own | as it says |
+//!
 //! [^ernst]: Ernst, Manfred; Stamminger, Marc; Greiner, Günther (2006). *Filter Importance Sampling*.
 //!     <https://doi.org/10.1109/RT.2006.280223>
 
+mod centre;
+mod gaussian;
+mod lanczos;
+mod mitchell;
+mod separable;
 mod square;
+mod tent;
 
+pub use centre::Centre;
+pub use gaussian::Gaussian;
+pub use lanczos::Lanczos;
+pub use mitchell::Mitchell;
+pub use separable::{Profile, Separable};
 pub use square::BoxFilter;
+pub use tent::Tent;
 
 /// A reconstruction filter.
 pub trait Filter: Sync {
@@ -23,6 +41,6 @@ pub trait Filter: Sync {
 pub struct Filtered {
     /// Where it is, in pixels from the upper left corner of the picture.
     pub point: [f64; 2],
-    /// The value of the filter over the density of the point; 1 for a filter that is nowhere negative.
+    /// The value of the filter over the density of the point; 1 about 1 for a filter that is nowhere negative.
     pub weight: f32,
 }

@@ -1,7 +1,8 @@
 //! Points for all pixels of an image at once, whose errors are spread as blue noise.
 
-use super::scramble::{HashedOwen, scramble_reversed};
-use super::{PointSet, Sobol};
+use super::PointSet;
+use super::scramble::{Columns, DigitOrder, scramble_reversed};
+use super::sobol::{multiplied, table};
 use crate::Error;
 use crate::hash::{hash, permute, unit};
 
@@ -28,11 +29,11 @@ use crate::hash::{hash, permute, unit};
 ///
 /// [^ahmed]: Ahmed, Abdalla; Wonka, Peter (2020). *Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via
 ///     Hierarchical Ordering of Pixels*. <https://doi.org/10.1145/3414685.3417881>
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 #[must_use]
 pub struct BlueNoise {
-    /// The scramble is there for its order of digits; the keys are those of the pairs.
-    sobol: Sobol<HashedOwen>,
+    /// Those of a pair, for digits of which the first is the lowest bit.
+    matrices: &'static [Columns],
     /// The logarithm of the number of samples for each pixel.
     samples: u32,
     seed: u64,
@@ -53,7 +54,7 @@ impl BlueNoise {
             ));
         }
         Ok(Self {
-            sobol: Sobol::new(2)?.scrambled(HashedOwen { seed }),
+            matrices: table(2, DigitOrder::FirstLowest),
             samples: samples.trailing_zeros(),
             seed,
         })
@@ -62,7 +63,7 @@ impl BlueNoise {
     /// The points of the pixel `pixel`, whose coordinates are taken modulo 2^16.
     pub fn pixel(&self, pixel: [u32; 2]) -> BlueNoisePixel {
         BlueNoisePixel {
-            image: self.clone(),
+            image: *self,
             first: morton(pixel) << self.samples,
         }
     }
@@ -78,10 +79,10 @@ fn morton(pixel: [u32; 2]) -> u64 {
     x | y << 1
 }
 
-/// The points of one pixel of an image, made by [`BlueNoise::pixel`]. Shares the table of the image.
+/// The points of one pixel of an image, made by [`BlueNoise::pixel`].
 ///
 /// An index at or past the size belongs to another, independent image.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 #[must_use]
 pub struct BlueNoisePixel {
     image: BlueNoise,
@@ -92,16 +93,16 @@ impl PointSet for BlueNoisePixel {
     #[inline]
     fn coordinate(&self, index: u64, dimension: u32) -> f64 {
         let BlueNoise {
-            sobol,
+            matrices,
             samples,
             seed,
-        } = &self.image;
+        } = self.image;
         let (image, sample) = (index >> samples, index & ((1 << samples) - 1));
         let (pair, axis) = (dimension / 2, dimension % 2);
-        let key = hash(hash(*seed, image), u64::from(pair));
+        let key = hash(hash(seed, image), u64::from(pair));
         let place = shuffled(self.first | sample, 32 + samples, key);
         unit(scramble_reversed(
-            sobol.digits(place, axis),
+            multiplied(&matrices[axis as usize], place),
             hash(!key, u64::from(axis)),
         ))
     }

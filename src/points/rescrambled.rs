@@ -1,9 +1,15 @@
 //! Paths of any length from a few good dimensions.
 
-use super::scramble::{HashedOwen, scramble, scramble_reversed};
+use core::ops::Range;
+
+use super::block::{Block, vectorised};
+use super::scramble::{
+    Columns, DigitOrder, ENDINGS, Ending, scramble, scramble_endings, scramble_reversed,
+};
+use super::sobol::{multiplied, table};
 use super::{PointSet, Sobol};
 use crate::Error;
-use crate::hash::{hash, unit};
+use crate::hash::{GOLDEN, hash, mix, unit};
 
 /// The first few dimensions of Sobol's sequence again and again, each time scrambled and shuffled anew: any number of
 /// dimensions.[^burley]
@@ -35,11 +41,11 @@ use crate::hash::{hash, unit};
 ///
 /// [^pmj]: Christensen, Per; Kensler, Andrew; Kilpatrick, Charlie (2018). *Progressive Multi-Jittered Sample Sequences*.
 ///     <https://doi.org/10.1111/cgf.13472>
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 #[must_use]
 pub struct Rescrambled {
-    /// The scramble is there for its order of digits; the keys are those of the groups.
-    sobol: Sobol<HashedOwen>,
+    /// Those of the dimensions of a group, for digits of which the first is the lowest bit.
+    matrices: &'static [Columns],
     seed: u64,
 }
 
@@ -50,29 +56,34 @@ impl Rescrambled {
     ///
     /// [`Error::Refused`] for a width that [`Sobol::new`] refuses.
     pub fn new(width: u32, seed: u64) -> Result<Self, Error> {
+        let width = Sobol::new(width)?.dimensions();
         Ok(Self {
-            sobol: Sobol::new(width)?.scrambled(HashedOwen { seed }),
+            matrices: table(width, DigitOrder::FirstLowest),
             seed,
         })
     }
 
-    /// The same groups with other scrambles: cheap, the table is shared.
-    pub fn reseeded(&self, seed: u64) -> Self {
-        Self {
-            sobol: self.sobol.clone(),
-            seed,
-        }
+    /// The same groups with other scrambles: a copy of two words.
+    pub const fn reseeded(&self, seed: u64) -> Self {
+        Self { seed, ..*self }
     }
 
     /// The scrambled digits of the coordinate under the scrambles that `seed` selects.
     #[inline]
     pub(super) fn digits(&self, seed: u64, index: u64, dimension: u32) -> u64 {
-        let width = self.sobol.dimensions();
+        // As usize, which a u32 fits into on every machine that has room for a table.
+        let (width, dimension) = (self.matrices.len(), dimension as usize);
         let (group, axis) = (dimension / width, dimension % width);
-        let key = hash(seed, u64::from(group));
-        let digits = self.sobol.digits(shuffled(index, key), axis);
-        scramble_reversed(digits, hash(key, u64::from(axis)))
+        let key = hash(seed, group as u64);
+        let digits = multiplied(&self.matrices[axis], shuffled(index, key));
+        scramble_reversed(digits, axis_key(key, axis))
     }
+}
+
+/// What selects the scramble of one dimension of the group of `key`, which is a well mixed word: SplitMix64's numbers.
+#[inline]
+const fn axis_key(key: u64, axis: usize) -> u64 {
+    mix(key.wrapping_add(GOLDEN.wrapping_mul(axis as u64 + 1)))
 }
 
 /// The index of the point that comes `index`-th: below its leading one the bits are scrambled, each by those above
@@ -82,8 +93,17 @@ impl Rescrambled {
 /// the coordinates do already.
 #[inline]
 fn shuffled(index: u64, key: u64) -> u64 {
-    let below = u64::MAX.checked_shr(index.leading_zeros() + 1).unwrap_or(0);
-    (index & !below) | (scramble(index, key) & below)
+    below_leading(index, scramble(index, key))
+}
+
+/// `index`, with those of the bits in `scrambled` that are below its leading one.
+#[inline(always)]
+const fn below_leading(index: u64, scrambled: u64) -> u64 {
+    let below = match index.leading_zeros() {
+        63.. => 0,
+        zeros => u64::MAX >> (zeros + 1),
+    };
+    (index & !below) | (scrambled & below)
 }
 
 impl PointSet for Rescrambled {
@@ -91,6 +111,161 @@ impl PointSet for Rescrambled {
     fn coordinate(&self, index: u64, dimension: u32) -> f64 {
         unit(self.digits(self.seed, index, dimension))
     }
+
+    fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+        let mut block = Block::new(first, dimensions, out, u32::MAX, 0);
+        if block.count() == 0 {
+            return;
+        }
+        vectorised(
+            #[inline(always)]
+            || {
+                let mut axes = self.matrices;
+                while !axes.is_empty() {
+                    let axis = self.matrices.len() - axes.len();
+                    // As many at once as make whole vectors.
+                    axes = if let Some((four, others)) = axes.split_first_chunk::<4>() {
+                        self.fill_axes(four, axis, &mut block);
+                        others
+                    } else if let Some((two, others)) = axes.split_first_chunk::<2>() {
+                        self.fill_axes(two, axis, &mut block);
+                        others
+                    } else {
+                        self.fill_axes(&[axes[0]], axis, &mut block);
+                        &axes[1..]
+                    };
+                }
+            },
+        );
+    }
+}
+
+/// Points that are computed side by side: those of an aligned block, whose order is shuffled among themselves.
+const POINTS: usize = ENDINGS;
+
+/// Coordinates in a vector.
+const LANES: usize = 8;
+
+/// The places in a block, each as the ending of an index: its first digit is the lowest bit.
+#[expect(clippy::cast_possible_truncation, reason = "places are below 64")]
+const PLACES: [Ending; POINTS] = {
+    let mut places = [0; POINTS];
+    let mut place = 0;
+    while place < POINTS {
+        let mut bit = 0;
+        while bit < BITS {
+            places[place] |= ((place >> bit & 1) << (BITS - 1 - bit)) as Ending;
+            bit += 1;
+        }
+        place += 1;
+    }
+    places
+};
+
+/// Bits of a place.
+const BITS: usize = POINTS.ilog2() as usize;
+
+impl Rescrambled {
+    /// Writes the coordinates in the dimensions from `axis` on, `N` of them, of every group of the block.
+    #[inline(always)]
+    fn fill_axes<const N: usize>(
+        &self,
+        matrices: &[Columns; N],
+        axis: usize,
+        block: &mut Block<'_>,
+    ) {
+        let (width, stride) = (self.matrices.len(), block.width);
+        let (start, end) = (
+            block.dimensions.start as usize,
+            block.dimensions.end as usize,
+        );
+        let mut table = None;
+        let mut words = [[0; N]; POINTS];
+        let mut coordinates = [[0.0; N]; POINTS];
+        for group in start / width..end.div_ceil(width) {
+            // Those of the dimensions that are asked for.
+            let dimension = group * width + axis;
+            let asked = dimension.max(start)..end.min(dimension.saturating_add(N));
+            if asked.is_empty() {
+                continue;
+            }
+            let table = table.get_or_insert_with(|| combinations(matrices));
+            let key = hash(self.seed, group as u64);
+            let keys: [u64; LANES] = core::array::from_fn(|lane| axis_key(key, axis + lane % N));
+
+            let mut index = block.first;
+            let mut out = &mut *block.out;
+            while !out.is_empty() {
+                let left = POINTS - within_block(index);
+                let (rows, later) = out.split_at_mut(out.len().min(left * stride));
+                let count = rows.len() / stride;
+                // What the points have in common, and what tells them apart.
+                let first = index - within_block(index) as u64;
+                let mut places = PLACES;
+                let above = below_leading(first, scramble_endings(first, key, &mut places));
+                if first == 0 {
+                    // The leading one of a place is the lowest in its ending.
+                    for (shuffled, place) in places.iter_mut().zip(PLACES) {
+                        let kept = place ^ place.wrapping_sub(1);
+                        *shuffled = (place & kept) | (*shuffled & !kept);
+                    }
+                }
+                let common = matrices
+                    .each_ref()
+                    .map(|columns| multiplied(columns, above));
+                let common: [u64; LANES] = core::array::from_fn(|lane| common[lane % N]);
+                for (word, &place) in words.iter_mut().zip(&places[POINTS - left..][..count]) {
+                    *word = table[within_block(place.into())];
+                }
+                let vectors = words.as_flattened().chunks_exact(LANES);
+                let results = coordinates.as_flattened_mut().chunks_exact_mut(LANES);
+                for (us, words) in results.zip(vectors).take((count * N).div_ceil(LANES)) {
+                    for (lane, u) in us.iter_mut().enumerate() {
+                        *u = unit(scramble_reversed(words[lane] ^ common[lane], keys[lane]));
+                    }
+                }
+                let rows = rows.chunks_exact_mut(stride);
+                if asked.len() == N {
+                    for (row, coordinates) in rows.zip(&coordinates) {
+                        row[asked.start - start..][..N].copy_from_slice(coordinates);
+                    }
+                } else {
+                    for (row, coordinates) in rows.zip(&coordinates) {
+                        row[asked.start - start..][..asked.len()].copy_from_slice(
+                            &coordinates[asked.start - dimension..][..asked.len()],
+                        );
+                    }
+                }
+                index = index.wrapping_add(count as u64);
+                out = later;
+            }
+        }
+    }
+}
+
+/// The place of a point in its aligned block.
+#[inline(always)]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "a remainder of a small number"
+)]
+fn within_block(index: u64) -> usize {
+    (index % POINTS as u64) as usize
+}
+
+/// What the low bits of an index add to the digits of every dimension, for each [ending](Ending) of an index.
+#[inline(always)]
+fn combinations<const N: usize>(matrices: &[Columns; N]) -> [[u64; N]; POINTS] {
+    let mut table = [[0; N]; POINTS];
+    for bit in 0..BITS {
+        let (done, next) = table.split_at_mut(1 << bit);
+        for (done, next) in done.iter().zip(next) {
+            for ((next, done), columns) in next.iter_mut().zip(done).zip(matrices) {
+                *next = done ^ columns[BITS - 1 - bit];
+            }
+        }
+    }
+    table
 }
 
 #[cfg(test)]

@@ -30,13 +30,22 @@ mod owen;
 pub use digit_permutation::DigitPermutation;
 pub use digital_shift::DigitalShift;
 pub use hashed_owen::HashedOwen;
-pub(super) use hashed_owen::{scramble, scramble_reversed};
+pub(super) use hashed_owen::{ENDINGS, Ending, scramble, scramble_endings, scramble_reversed};
 pub use linear_matrix::LinearMatrix;
 pub use owen::Owen;
 
 /// The generator matrix over the two-element field that makes the binary digits of one dimension: column `k` is what bit
 /// `k` of the index adds, its first digit in the highest bit.
 pub type Columns = [u64; 64];
+
+/// In which order a word holds the digits of a coordinate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DigitOrder {
+    /// The first digit is the highest bit: the word is the coordinate, times 2^64.
+    FirstHighest,
+    /// The first digit is the lowest bit: sums and products carry from earlier digits to later ones.
+    FirstLowest,
+}
 
 /// A randomisation of binary digits: of [`Sobol`](super::Sobol)'s and of every other net in base 2.
 ///
@@ -49,6 +58,9 @@ pub type Columns = [u64; 64];
 /// # Ok::<(), estimand::Error>(())
 /// ```
 pub trait BinaryScramble: Sync {
+    /// In which order [`prepare`](Self::prepare) and [`scramble`](Self::scramble) are given the digits.
+    const ORDER: DigitOrder = DigitOrder::FirstHighest;
+
     /// What selects this randomisation among its like.
     fn seed(&self) -> u64;
 
@@ -58,10 +70,11 @@ pub trait BinaryScramble: Sync {
         hash(self.seed(), u64::from(dimension))
     }
 
-    /// The part of the randomisation that is linear over the two-element field: changes the columns of the dimension of
-    /// `key`, once.
-    fn prepare(&self, key: u64, columns: &mut Columns) {
+    /// The part of the randomisation that is linear over the two-element field: what takes the place of the columns of the
+    /// dimension of `key`, asked for once. `None` if they stay, as they do by default; then all sets share them.
+    fn prepare(&self, key: u64, columns: &Columns) -> Option<Columns> {
         let _ = (key, columns);
+        None
     }
 
     /// The rest of it, for every point: the scrambled digits, from those that the [prepared](Self::prepare) columns make.

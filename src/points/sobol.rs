@@ -1,10 +1,9 @@
 //! Sobol' points.
 
 use core::ops::Range;
-use std::sync::Arc;
 
 use super::block::{Block, vectorised};
-use super::scramble::{BinaryScramble, Columns, Plain};
+use super::scramble::{BinaryScramble, Columns, DigitOrder, Plain};
 use super::{Independent, PointSet};
 use crate::Error;
 use crate::hash::unit;
@@ -12,6 +11,8 @@ use crate::hash::unit;
 mod directions;
 
 pub use directions::DIMENSIONS;
+use directions::Matrices;
+pub(super) use directions::table;
 
 /// Sobol' points[^sobol] with the direction numbers of Joe and Kuo.[^joe]
 ///
@@ -34,8 +35,10 @@ pub use directions::DIMENSIONS;
 ///
 /// # Memory
 ///
-/// 512 bytes for a dimension, shared by all clones; also by scrambled ones, unless [`LinearMatrix`](super::LinearMatrix)
-/// or [`HashedOwen`](super::HashedOwen) changes the matrices.
+/// 512 bytes for a dimension, of the next power of two of dimensions and of 32 at least: a table that is made once and
+/// that all sets of the program share, with another one for all that are scrambled by [`HashedOwen`](super::HashedOwen).
+/// So a set is made, cloned and scrambled in no time, unless [`LinearMatrix`](super::LinearMatrix) changes the matrices: then
+/// its clones share 512 bytes for a dimension of their own.
 ///
 /// ```
 /// use estimand::points::{PointSet, Sobol};
@@ -55,8 +58,7 @@ pub use directions::DIMENSIONS;
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct Sobol<S = Plain> {
-    /// One generator matrix for each dimension.
-    matrices: Arc<[Columns]>,
+    matrices: Matrices,
     scramble: S,
 }
 
@@ -80,7 +82,7 @@ impl Sobol {
             ));
         }
         Ok(Self {
-            matrices: directions::matrices().take(dimensions as usize).collect(),
+            matrices: Matrices::Table(table(dimensions, DigitOrder::FirstHighest)),
             scramble: Plain,
         })
     }
@@ -89,41 +91,45 @@ impl Sobol {
 impl Sobol {
     /// The same points, randomised by `scramble`.
     pub fn scrambled<T: BinaryScramble>(self, scramble: T) -> Sobol<T> {
-        let mut matrices = self.matrices;
-        for (dimension, place) in (0..).zip(0..matrices.len()) {
-            let mut matrix = matrices[place];
-            scramble.prepare(scramble.key(dimension), &mut matrix);
-            if matrix != matrices[place] {
-                Arc::make_mut(&mut matrices)[place] = matrix;
+        let table = table(self.dimensions(), T::ORDER);
+        let mut changed = Vec::new();
+        for (dimension, place) in (0..).zip(0..table.len()) {
+            if let Some(matrix) = scramble.prepare(scramble.key(dimension), &table[place]) {
+                if changed.is_empty() {
+                    changed.extend_from_slice(table);
+                }
+                changed[place] = matrix;
             }
         }
+        let matrices = if changed.is_empty() {
+            Matrices::Table(table)
+        } else {
+            Matrices::Changed(changed.into())
+        };
         Sobol { matrices, scramble }
     }
 }
 
-impl<S: BinaryScramble> Sobol<S> {
-    /// The digits of a coordinate before they are scrambled.
-    #[inline]
-    pub(super) fn digits(&self, index: u64, dimension: u32) -> u64 {
-        let columns = &self.matrices[dimension as usize];
-        let mut digits = 0;
-        let mut rest = index;
-        while rest != 0 {
-            digits ^= columns[rest.trailing_zeros() as usize % 64];
-            rest &= rest - 1;
-        }
-        digits
+/// The generator matrix times the bits of `index`: the digits of a coordinate before they are scrambled.
+#[inline]
+pub(super) fn multiplied(columns: &Columns, index: u64) -> u64 {
+    let mut digits = 0;
+    let mut rest = index;
+    while rest != 0 {
+        digits ^= columns[rest.trailing_zeros() as usize % 64];
+        rest &= rest - 1;
     }
+    digits
 }
 
 impl<S: BinaryScramble> PointSet for Sobol<S> {
     #[inline]
     fn coordinate(&self, index: u64, dimension: u32) -> f64 {
-        if dimension as usize >= self.matrices.len() {
+        let Some(columns) = self.matrices.get(dimension as usize) else {
             return Independent::past(self.scramble.seed()).coordinate(index, dimension);
-        }
+        };
         let key = self.scramble.key(dimension);
-        unit(self.scramble.scramble(key, self.digits(index, dimension)))
+        unit(self.scramble.scramble(key, multiplied(columns, index)))
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "21201 at most")]
@@ -193,6 +199,7 @@ impl<S: BinaryScramble> Sobol<S> {
             return;
         }
 
+        let matrices = &self.matrices[dimensions.start as usize..][..width];
         let mut keys = [0; LANES];
         let mut digits = [0; LANES];
         let mut steps = [[0; LANES]; STEPS];
@@ -201,9 +208,9 @@ impl<S: BinaryScramble> Sobol<S> {
         let base = (number & !(STEPS as u64 - 1)) << bits;
         for (lane, dimension) in (0..lanes).zip(dimensions.clone().cycle()) {
             keys[lane] = self.scramble.key(dimension);
-            digits[lane] = self.digits(base | (lane / width) as u64, dimension);
+            let index = base | (lane / width) as u64;
+            digits[lane] = multiplied(&matrices[lane % width], index);
         }
-        let matrices = &self.matrices[dimensions.start as usize..][..width];
         for bit in 0..STEPS.trailing_zeros() {
             let (done, next) = steps.split_at_mut(1 << bit);
             for (done, next) in done.iter().zip(next) {
@@ -218,15 +225,13 @@ impl<S: BinaryScramble> Sobol<S> {
             .take(whole);
         for row in rows {
             let step = &steps[number as usize % STEPS];
-            // Whole rows of lanes have a length that the compiler knows.
-            match row.first_chunk_mut::<LANES>() {
-                Some(row) if lanes == LANES => self.write(&keys, &digits, step, row),
-                _ => self.write(
-                    &keys[..lanes],
-                    &digits[..lanes],
-                    &step[..lanes],
-                    &mut row[..lanes],
-                ),
+            // All lanes in any case: their number is one that the compiler knows.
+            if let (LANES, Some(row)) = (lanes, row.first_chunk_mut()) {
+                self.write(&keys, &digits, step, row);
+            } else {
+                let mut all = [0.0; LANES];
+                self.write(&keys, &digits, step, &mut all);
+                row[..lanes].copy_from_slice(&all[..lanes]);
             }
             number = number.wrapping_add(1);
             if number.is_multiple_of(STEPS as u64) {
@@ -246,7 +251,13 @@ impl<S: BinaryScramble> Sobol<S> {
 
 impl<S: BinaryScramble> Sobol<S> {
     #[inline(always)]
-    fn write(&self, keys: &[u64], digits: &[u64], step: &[u64], row: &mut [f64]) {
+    fn write(
+        &self,
+        keys: &[u64; LANES],
+        digits: &[u64; LANES],
+        step: &[u64; LANES],
+        row: &mut [f64; LANES],
+    ) {
         for (((u, step), &key), digits) in row.iter_mut().zip(step).zip(keys).zip(digits) {
             *u = unit(self.scramble.scramble(key, digits ^ step));
         }

@@ -1,6 +1,6 @@
 //! Nested scrambling by a hash that carries only from earlier digits to later ones.
 
-use super::{BinaryScramble, Columns};
+use super::{BinaryScramble, DigitOrder};
 
 /// Nested scrambling, nearly uniform, in a few multiplications.[^laine] [^burley]
 ///
@@ -28,13 +28,10 @@ pub struct HashedOwen {
 }
 
 impl BinaryScramble for HashedOwen {
+    const ORDER: DigitOrder = DigitOrder::FirstLowest;
+
     fn seed(&self) -> u64 {
         self.seed
-    }
-
-    /// Reverses the digits, once for all points.
-    fn prepare(&self, _: u64, columns: &mut Columns) {
-        *columns = columns.map(u64::reverse_bits);
     }
 
     #[inline(always)]
@@ -63,12 +60,81 @@ pub(in crate::points) fn scramble_reversed(reversed: u64, key: u64) -> u64 {
 ///     <https://psychopath.io/post/2021_01_30_building_a_better_lk_hash>
 #[inline(always)]
 fn laine_karras(mut word: u64, key: u64) -> u64 {
-    word ^= word.wrapping_mul(0x9fb2_1c65_3d20_adea);
+    word ^= word.wrapping_mul(MULTIPLIERS[0]);
     word = word.wrapping_add(key);
     word = word.wrapping_mul((key >> 32) | 1);
-    word ^= word.wrapping_mul(0xd6e8_feb8_0552_6c56);
-    word ^= word.wrapping_mul(0xa0761d6478bd642e_u64 & !1);
+    word ^= word.wrapping_mul(MULTIPLIERS[1]);
+    word ^= word.wrapping_mul(MULTIPLIERS[2]);
     word
+}
+
+/// Even, so that a bit of a product depends on lower bits of the word only, and the sum with it can be undone.
+const MULTIPLIERS: [u64; 3] = [
+    0x9fb2_1c65_3d20_adea,
+    0xd6e8_feb8_0552_6c56,
+    0xa076_1d64_78bd_642e,
+];
+
+/// How many digits an [`Ending`] has.
+const ENDING: u32 = 6;
+
+/// All words that differ in their last six digits only.
+pub(in crate::points) const ENDINGS: usize = 1 << ENDING;
+
+/// The last six digits of a word, of which the first is the lowest bit. Higher bits have no meaning.
+pub(in crate::points) type Ending = u16;
+
+/// [`scramble`] of all words that begin with the digits of `word` but for the last six: puts into the place of each of the
+/// `endings` the one that it becomes, and returns the digits before them.
+///
+/// The steps are those of the hash. What the first digits do is the same for all words, and done once.
+#[inline(always)]
+pub(in crate::points) fn scramble_endings(
+    word: u64,
+    key: u64,
+    endings: &mut [Ending; ENDINGS],
+) -> u64 {
+    let before = xor_product(word.reverse_bits() & BEFORE, MULTIPLIERS[0], endings);
+    let (sum, multiplier) = (before.wrapping_add(key), (key >> 32) | 1);
+    let product = (sum & BEFORE).wrapping_mul(multiplier);
+    for end in &mut *endings {
+        *end = end
+            .wrapping_add(last_six(sum))
+            .wrapping_mul(low(multiplier))
+            .wrapping_add(last_six(product));
+    }
+    let before = xor_product(product & BEFORE, MULTIPLIERS[1], endings);
+    let before = xor_product(before, MULTIPLIERS[2], endings);
+    before.reverse_bits()
+}
+
+/// The digits before the last six.
+const BEFORE: u64 = u64::MAX >> ENDING;
+
+/// Adds to each word its product with `multiplier`, bit by bit.
+#[inline(always)]
+fn xor_product(before: u64, multiplier: u64, endings: &mut [Ending; ENDINGS]) -> u64 {
+    let product = before.wrapping_mul(multiplier);
+    for end in endings {
+        *end ^= end
+            .wrapping_mul(low(multiplier))
+            .wrapping_add(last_six(product));
+    }
+    (before ^ product) & BEFORE
+}
+
+#[inline(always)]
+fn last_six(word: u64) -> Ending {
+    low(word >> BEFORE.trailing_ones())
+}
+
+#[inline(always)]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "higher bits have no meaning"
+)]
+fn low(word: u64) -> Ending {
+    word as Ending
 }
 
 #[cfg(test)]
@@ -83,6 +149,21 @@ mod tests {
                 let word = hash(2, key);
                 let changed = scramble(word, key) ^ scramble(word ^ 1 << (63 - digit), key);
                 assert_eq!(changed.leading_zeros(), digit);
+            }
+        }
+    }
+
+    #[test]
+    fn endings_are_scrambled_as_whole_words_are() {
+        for key in (0..50).map(|key| hash(1, key)) {
+            let word = hash(2, key) >> ENDING << ENDING;
+            let reversed = |digits: u64| digits.reverse_bits() >> (u64::BITS - ENDING);
+            let mut endings: [Ending; ENDINGS] =
+                core::array::from_fn(|end| reversed(end as u64).try_into().unwrap());
+            let before = scramble_endings(word, key, &mut endings);
+            for (place, end) in (0..).zip(endings) {
+                let end = reversed(u64::from(end) % ENDINGS as u64);
+                assert_eq!(before | end, scramble(word | place, key));
             }
         }
     }

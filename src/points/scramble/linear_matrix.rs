@@ -34,18 +34,18 @@ impl BinaryScramble for LinearMatrix {
         self.seed
     }
 
-    fn prepare(&self, key: u64, columns: &mut Columns) {
+    fn prepare(&self, key: u64, columns: &Columns) -> Option<Columns> {
         // Row `row` of the matrix has random digits before the diagonal, a one on it, nothing after it.
         let rows: Columns = core::array::from_fn(|row| {
             let diagonal = 1_u64 << (63 - row);
             (hash(key, row as u64) & !(diagonal - 1)) | diagonal
         });
-        for column in columns {
-            *column = (0..).zip(&rows).fold(0, |digits, (row, &entries)| {
-                let digit = u64::from((entries & *column).count_ones() & 1);
+        Some(columns.map(|column| {
+            (0..).zip(&rows).fold(0, |digits, (row, &entries)| {
+                let digit = u64::from((entries & column).count_ones() & 1);
                 digits | digit << (63 - row)
-            });
-        }
+            })
+        }))
     }
 
     #[inline(always)]

@@ -2,7 +2,11 @@
 //!
 //! The numbers and their licence are in the files beside this one.
 
+use core::ops::Deref;
+use std::sync::{Arc, OnceLock};
+
 use super::Columns;
+use crate::points::DigitOrder;
 
 /// How many dimensions [`Sobol`](super::Sobol) has at most: 1024, or 21201 with the feature `sobol-full`.
 pub const DIMENSIONS: u32 = if cfg!(feature = "sobol-full") {
@@ -20,8 +24,56 @@ const REST: &str = include_str!("new-joe-kuo-6.1025-21201.txt");
 #[cfg(not(feature = "sobol-full"))]
 const REST: &str = "";
 
+/// One generator matrix for each dimension.
+#[derive(Clone, Debug)]
+pub(super) enum Matrices {
+    /// Those of the table: nothing is counted, so that a set can be made and dropped for every pixel.
+    Table(&'static [Columns]),
+    /// Those that a scramble has changed.
+    Changed(Arc<[Columns]>),
+}
+
+impl Deref for Matrices {
+    type Target = [Columns];
+
+    #[inline]
+    fn deref(&self) -> &[Columns] {
+        match self {
+            Self::Table(matrices) => matrices,
+            Self::Changed(matrices) => matrices,
+        }
+    }
+}
+
+/// The generator matrices of the first `dimensions` dimensions, at most [`DIMENSIONS`]. They are made once for the whole
+/// program, for a power of two of dimensions at a time.
+pub(in crate::points) fn table(dimensions: u32, order: DigitOrder) -> &'static [Columns] {
+    /// The least and the most that are made at once, as powers of two.
+    const FEWEST: u32 = 5;
+    const MOST: u32 = DIMENSIONS.next_power_of_two().trailing_zeros();
+    const LEVELS: usize = (MOST - FEWEST + 1) as usize;
+    static TABLES: [[OnceLock<Box<[Columns]>>; LEVELS]; 2] =
+        [const { [const { OnceLock::new() }; LEVELS] }; 2];
+
+    let level = dimensions.next_power_of_two().ilog2().max(FEWEST);
+    let tables = &TABLES[match order {
+        DigitOrder::FirstHighest => 0,
+        DigitOrder::FirstLowest => 1,
+    }];
+    let table = tables[(level - FEWEST) as usize].get_or_init(|| {
+        let matrices = matrices().take(1 << level);
+        match order {
+            DigitOrder::FirstHighest => matrices.collect(),
+            DigitOrder::FirstLowest => matrices
+                .map(|columns| columns.map(u64::reverse_bits))
+                .collect(),
+        }
+    });
+    &table[..dimensions as usize]
+}
+
 /// The generator matrices of all dimensions, in order.
-pub(super) fn matrices() -> impl Iterator<Item = Columns> {
+fn matrices() -> impl Iterator<Item = Columns> {
     let lines = FIRST.lines().skip(1).chain(REST.lines().skip(1));
     core::iter::once(van_der_corput()).chain(lines.map(matrix))
 }
@@ -60,6 +112,23 @@ fn matrix(line: &str) -> Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tables_hold_the_dimensions_asked_for_in_either_order() {
+        let all: Vec<Columns> = matrices().collect();
+        for dimensions in [1, 2, 31, 32, 33, 64, 65, DIMENSIONS] {
+            let highest = table(dimensions, DigitOrder::FirstHighest);
+            let lowest = table(dimensions, DigitOrder::FirstLowest);
+            assert_eq!(highest, &all[..dimensions as usize]);
+            assert!(
+                lowest
+                    .iter()
+                    .flatten()
+                    .map(|column| column.reverse_bits())
+                    .eq(highest.iter().flatten().copied())
+            );
+        }
+    }
 
     #[test]
     fn the_table_has_every_dimension_and_every_matrix_an_inverse() {

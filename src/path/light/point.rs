@@ -1,0 +1,68 @@
+//! Lights without size that shine everywhere.
+
+use glam::Vec3A;
+
+use super::Illumination;
+use crate::Error;
+use crate::path::{Segment, Surface, color};
+
+/// A point that shines equally in all directions. Nothing can hit it: it is met by next-event estimation alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointLight {
+    position: Vec3A,
+    intensity: Vec3A,
+}
+
+impl PointLight {
+    /// The point with the given `intensity`: power per solid angle, in linear red, green and blue.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for a position that is not finite, and for an intensity that is negative or not finite.
+    pub fn new(position: [f32; 3], intensity: [f32; 3]) -> Result<Self, Error> {
+        Ok(Self {
+            position: place(position)?,
+            intensity: color::radiance(intensity)?,
+        })
+    }
+
+    /// The light that arrives at the surface `from` if nothing is in the way.
+    #[inline]
+    pub fn illuminate<D>(&self, from: &Surface<D>) -> Option<Illumination> {
+        from_point(from, self.position, self.intensity)
+    }
+}
+
+/// A position with finite coordinates.
+pub(super) fn place(position: [f32; 3]) -> Result<Vec3A, Error> {
+    let place = Vec3A::from(position);
+    if place.is_finite() {
+        Ok(place)
+    } else {
+        Err(Error::refused(
+            "position of a light",
+            "finite",
+            format_args!("{position:?}"),
+        ))
+    }
+}
+
+/// The light from a point with the given intensity towards the surface.
+#[inline]
+pub(super) fn from_point<D>(
+    from: &Surface<D>,
+    position: Vec3A,
+    intensity: Vec3A,
+) -> Option<Illumination> {
+    let squared = (position - from.point).length_squared();
+    let weight = intensity / squared;
+    // A surface at the point itself, or so near that nothing finite can be said, is not lit.
+    if !(squared > 0.0 && weight.is_finite()) {
+        return None;
+    }
+    Some(Illumination {
+        way: Segment::to_point(from, position)?,
+        weight,
+        density: f32::INFINITY,
+    })
+}

@@ -1,0 +1,245 @@
+//! Pictures of what is around a scene.
+
+use core::f64::consts::PI;
+
+use glam::{DMat3, DVec3, Vec3, Vec3A};
+
+use super::{Emission, Environment, Illumination};
+use crate::path::{Segment, Surface, color};
+use crate::warp::{Piecewise2d, Warp};
+use crate::{Error, Sampler};
+
+/// Light from all around, by a picture of equal steps in latitude and longitude, interpolated linearly.
+///
+/// Draws two coordinates: a direction in proportion to luminance times solid angle, constant within each square between four
+/// pixels.
+///
+/// The first row of pixels lies at the zenith, which is the y axis, the last at the nadir. A row starts at the -z
+/// axis, half a pixel before its first pixel, and turns towards the x axis, as Mitsuba has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sky {
+    width: usize,
+    pixels: Vec<Vec3>,
+    /// From directions of the scene to those of the picture, and back.
+    inward: DMat3,
+    outward: DMat3,
+    /// Of the squares between pixels: the first row of them lies between the first two rows of pixels.
+    directions: Piecewise2d,
+}
+
+impl Sky {
+    /// The sky with the given picture, linear red, green and blue row by row, turned by `outward`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for pixels that make no whole number of rows of `width` pixels, at least two rows of one; for a
+    /// component that is negative or not finite; for a picture that is all black; and for a matrix that is no
+    /// rotation, up to a thousandth.
+    pub fn new(width: usize, pixels: &[[f32; 3]], outward: DMat3) -> Result<Self, Error> {
+        if width == 0 || pixels.len() < 2 * width || !pixels.len().is_multiple_of(width) {
+            return Err(Error::refused(
+                "number of pixels of a sky",
+                "a multiple of the width, at least twice",
+                format_args!("{} at a width of {width}", pixels.len()),
+            ));
+        }
+        let pixels = pixels
+            .iter()
+            .map(|&pixel| color::radiance(pixel).map(Vec3::from))
+            .collect::<Result<Vec<_>, _>>()?;
+        let identity = (outward.transpose() * outward - DMat3::IDENTITY).to_cols_array();
+        if !identity.iter().all(|entry| entry.abs() < 1e-3) {
+            return Err(Error::refused("turn of a sky", "a rotation", outward));
+        }
+        let rows = pixels.len() / width - 1;
+        let mut weights = Vec::with_capacity(rows * width);
+        for row in 0..rows {
+            let solid_angle = (PI * (row as f64 + 0.5) / rows as f64).sin();
+            for column in 0..width {
+                let next = (column + 1) % width;
+                let corners = [
+                    pixels[row * width + column],
+                    pixels[row * width + next],
+                    pixels[(row + 1) * width + column],
+                    pixels[(row + 1) * width + next],
+                ];
+                let sum: f64 = corners.into_iter().map(color::luminance).sum();
+                weights.push(sum * solid_angle);
+            }
+        }
+        Ok(Self {
+            width,
+            pixels,
+            inward: outward.inverse(),
+            outward,
+            directions: Piecewise2d::new(&weights, width)?,
+        })
+    }
+
+    /// Where a direction lies in the squares between pixels: `[0, 1)` each way, and the sine of its angle to the zenith.
+    #[inline]
+    fn place(&self, direction: Vec3A) -> ([f64; 2], f64) {
+        let d = self.inward * direction.as_dvec3();
+        let sine = d.x.hypot(d.z);
+        let longitude = d.x.atan2(-d.z) / (2.0 * PI) - 0.5 / self.width as f64;
+        let latitude = sine.atan2(d.y) / PI;
+        let within = |u: f64| u.clamp(0.0, 1.0 - f64::EPSILON / 2.0);
+        (
+            [within(longitude - longitude.floor()), within(latitude)],
+            sine,
+        )
+    }
+
+    /// The radiance at a place in the squares between pixels.
+    #[inline]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "rounds down to a pixel, and to f32"
+    )]
+    fn radiance(&self, [x, y]: [f64; 2]) -> Vec3 {
+        let rows = self.pixels.len() / self.width - 1;
+        let (x, y) = (x * self.width as f64, y * rows as f64);
+        let (column, row) = ((x as usize).min(self.width - 1), (y as usize).min(rows - 1));
+        let next = if column + 1 == self.width {
+            0
+        } else {
+            column + 1
+        };
+        let (s, t) = ((x - column as f64) as f32, (y - row as f64) as f32);
+        let [above, below] = [row, row + 1].map(|row| {
+            let row = &self.pixels[row * self.width..][..self.width];
+            row[column].lerp(row[next], s)
+        });
+        above.lerp(below, t)
+    }
+
+    /// A density in the squares between pixels as one per solid angle.
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+    fn per_solid_angle(density: f64, sine: f64) -> f32 {
+        if sine > 0.0 {
+            (density / (2.0 * PI * PI * sine)) as f32
+        } else {
+            0.0
+        }
+    }
+}
+
+impl Environment for Sky {
+    #[inline]
+    fn emitted(&self, direction: Vec3A) -> Emission {
+        let (place, sine) = self.place(direction);
+        Emission {
+            radiance: self.radiance(place).into(),
+            density: Self::per_solid_angle(self.directions.density(place), sine),
+        }
+    }
+
+    #[inline]
+    fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
+        let place = self.directions.sample(u.next_2d());
+        let turns = place[0] + 0.5 / self.width as f64;
+        let (sine, cosine) = (PI * place[1]).sin_cos();
+        let (x, z) = (2.0 * PI * turns).sin_cos();
+        let direction = self.outward * DVec3::new(x * sine, cosine, -z * sine);
+        let direction = direction.normalize().as_vec3a();
+        let density = Self::per_solid_angle(self.directions.density(place), sine);
+        let weight = Vec3A::from(self.radiance(place)) / density;
+        (density > 0.0 && density < f32::INFINITY).then(|| Illumination {
+            way: Segment::along(from, direction),
+            weight,
+            density,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::Surface;
+    use crate::points::{HashedOwen, PointSet, Sobol};
+
+    fn here() -> Surface {
+        Surface {
+            point: Vec3A::ZERO,
+            normal: Vec3A::Y,
+            margin: 0.0,
+            detail: (),
+        }
+    }
+
+    fn sky(turn: DMat3) -> Sky {
+        let pixels: Vec<[f32; 3]> = (0_u8..15)
+            .map(|i| {
+                let x = f32::from(i * 7 % 15);
+                [x, 0.5 * x, if i % 3 == 0 { 0.0 } else { 2.0 }]
+            })
+            .collect();
+        Sky::new(5, &pixels, turn).unwrap()
+    }
+
+    #[test]
+    fn a_pixel_lies_where_mitsuba_has_it() {
+        // Mitsuba 3.9.1, `envmap` of 8 x 5 pixels: pixel (2, 1) is at longitude (2 + 0.5) / 8 of a turn, latitude 1/4 of pi.
+        let mut pixels = vec![[0.0; 3]; 40];
+        pixels[8 + 2] = [1.0; 3];
+        let sky = Sky::new(8, &pixels, DMat3::IDENTITY).unwrap();
+        let (longitude, latitude) = (2.0 * PI * 2.5 / 8.0, PI / 4.0);
+        let direction = DVec3::new(
+            longitude.sin() * latitude.sin(),
+            latitude.cos(),
+            -longitude.cos() * latitude.sin(),
+        );
+        let emission = sky.emitted(direction.as_vec3a());
+        assert!((emission.radiance.x - 1.0).abs() < 1e-5);
+        assert!(emission.density > 0.0);
+        assert_eq!(sky.emitted(Vec3A::NEG_Y).radiance, Vec3A::ZERO);
+    }
+
+    #[test]
+    fn samples_have_the_density_and_the_radiance_of_their_direction() {
+        let sky = sky(DMat3::from_rotation_x(0.3) * DMat3::from_rotation_y(2.0));
+        let points = Sobol::new(2).unwrap().scrambled(HashedOwen { seed: 1 });
+        let mut integral = Vec3A::ZERO;
+        let count: u16 = 1 << 14;
+        for index in 0..count {
+            let light = sky
+                .sample(&here(), &mut points.point(index.into()))
+                .unwrap();
+            let emission = sky.emitted(light.way.ray.direction);
+            assert!((light.density / emission.density - 1.0).abs() < 1e-3);
+            assert!((light.weight * light.density - emission.radiance).length() < 1e-2);
+            integral += light.weight / f32::from(count);
+        }
+        // The same by the midpoint rule.
+        let mut expected = Vec3A::ZERO;
+        let steps = 200_u16;
+        for row in 0..steps {
+            for column in 0..2 * steps {
+                let (x, y) = (
+                    (f64::from(column) + 0.5) / f64::from(2 * steps),
+                    (f64::from(row) + 0.5) / f64::from(steps),
+                );
+                let area = (PI * y).sin() * (PI / f64::from(steps)).powi(2);
+                #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+                let area = area as f32;
+                expected += Vec3A::from(sky.radiance([x, y])) * area;
+            }
+        }
+        assert!((integral / expected - 1.0).abs().max_element() < 2e-3);
+    }
+
+    #[test]
+    fn bad_skies_are_refused() {
+        let identity = DMat3::IDENTITY;
+        assert!(Sky::new(2, &[[1.0; 3]; 3], identity).is_err());
+        assert!(Sky::new(0, &[], identity).is_err());
+        assert!(Sky::new(2, &[[1.0; 3]; 2], identity).is_err());
+        assert!(Sky::new(1, &[[f32::NAN; 3]; 2], identity).is_err());
+        assert!(Sky::new(1, &[[-1.0; 3]; 2], identity).is_err());
+        assert!(Sky::new(1, &[[0.0; 3]; 2], identity).is_err());
+        assert!(Sky::new(1, &[[1.0; 3]; 2], 2.0 * identity).is_err());
+        assert!(Sky::new(1, &[[1.0; 3]; 2], identity).is_ok());
+    }
+}

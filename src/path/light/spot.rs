@@ -1,0 +1,78 @@
+//! Lights without size that shine into a cone.
+
+use glam::Vec3A;
+
+use super::Illumination;
+use super::point::{from_point, place};
+use crate::Error;
+use crate::path::{Surface, color};
+
+/// A point that shines into a cone: with full intensity near the axis, from there falling linearly with the angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpotLight {
+    position: Vec3A,
+    axis: Vec3A,
+    intensity: Vec3A,
+    /// The angle, in radians, at which the light ends.
+    cutoff: f32,
+    /// The cosine of the angle up to which it is full, and of that at which it ends.
+    full_cosine: f32,
+    cutoff_cosine: f32,
+    /// One over the width of the transition, in radians; 0 where there is none.
+    per_radian: f32,
+}
+
+impl SpotLight {
+    /// The light at `position` that shines along `axis` with the given `intensity`: power per solid angle, in linear
+    /// red, green and blue. It is full up to `full_degrees` from the axis and ends at `cutoff_degrees`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for a position that is not finite, an axis without direction, an intensity that is negative or not
+    /// finite, and angles that are not `0 <= full <= cutoff <= 180`.
+    pub fn new(
+        position: [f32; 3],
+        axis: [f32; 3],
+        intensity: [f32; 3],
+        full_degrees: f32,
+        cutoff_degrees: f32,
+    ) -> Result<Self, Error> {
+        if !(0.0 <= full_degrees && full_degrees <= cutoff_degrees && cutoff_degrees <= 180.0) {
+            return Err(Error::refused(
+                "angles of a spot light",
+                "0 <= full <= cutoff <= 180 degrees",
+                format_args!("{full_degrees} and {cutoff_degrees}"),
+            ));
+        }
+        let (full, cutoff) = (full_degrees.to_radians(), cutoff_degrees.to_radians());
+        Ok(Self {
+            position: place(position)?,
+            axis: super::directional::direction(axis)?,
+            intensity: color::radiance(intensity)?,
+            cutoff,
+            full_cosine: full.cos(),
+            cutoff_cosine: cutoff.cos(),
+            per_radian: if cutoff > full {
+                (cutoff - full).recip()
+            } else {
+                0.0
+            },
+        })
+    }
+
+    /// The light that arrives at the surface `from` if nothing is in the way.
+    #[inline]
+    pub fn illuminate<D>(&self, from: &Surface<D>) -> Option<Illumination> {
+        let toward = (from.point - self.position).try_normalize()?;
+        let cosine = self.axis.dot(toward);
+        if cosine <= self.cutoff_cosine {
+            return None;
+        }
+        let falloff = if cosine >= self.full_cosine {
+            1.0
+        } else {
+            ((self.cutoff - cosine.acos()) * self.per_radian).clamp(0.0, 1.0)
+        };
+        from_point(from, self.position, self.intensity * falloff)
+    }
+}

@@ -135,13 +135,7 @@ fn trials(arguments: &Arguments, case: &Case) -> Result<Vec<Trial>, Error> {
     };
     let mut trials = Vec::new();
     for method in Method::ALL {
-        trials.extend(Trial::new(
-            method,
-            &case.subject(),
-            arguments.count,
-            runs,
-            1,
-        )?);
+        trials.extend(Trial::new(method, &case.into(), arguments.count, runs, 1)?);
     }
     Ok(trials)
 }

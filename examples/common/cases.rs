@@ -81,7 +81,7 @@ impl Plan<'_> {
     pub(crate) fn stiff(&self) -> Result<Vec<Row>, Error> {
         let mut rows = Vec::new();
         for case in stiff::cases().iter().filter(|case| case.dims <= 10) {
-            rows.extend(self.rows(&case.name, &case.subject())?);
+            rows.extend(self.rows(&case.name, &case.into())?);
         }
         Ok(rows)
     }

@@ -4,8 +4,6 @@ use std::f64::consts::{PI, TAU};
 
 use estimand::{Integrand, Sampler};
 
-use crate::trial::Subject;
-
 type Function = Box<dyn Fn(&[f64]) -> f64 + Send + Sync>;
 
 /// One integrand: a function of `dims` coordinates, and its integral.
@@ -16,17 +14,6 @@ pub(crate) struct Case {
     function: Function,
     /// What to use where sampling without knowledge of the integrand fails.
     pub(crate) instead: &'static str,
-}
-
-impl Case {
-    /// The integrand with its integral, and its limits where it is an indicator.
-    pub(crate) fn subject(&self) -> Subject<'_, Self> {
-        Subject {
-            integrand: self,
-            integral: self.integral,
-            bounds: self.name.starts_with("indicator").then_some([0.0, 1.0]),
-        }
-    }
 }
 
 impl Integrand for Case {

@@ -3,6 +3,7 @@
 use estimand::{Error, Estimate, Integrand, Interval, Warning, each};
 
 use crate::methods::Method;
+use crate::stiff::Case;
 
 /// The level of the intervals.
 pub(crate) const LEVEL: f64 = 0.95;
@@ -32,6 +33,17 @@ pub(crate) struct Subject<'a, I> {
     pub(crate) integral: f64,
     /// Limits of the values, where a method may know them.
     pub(crate) bounds: Option<[f64; 2]>,
+}
+
+impl<'a> From<&'a Case> for Subject<'a, Case> {
+    /// The limits are known of indicators.
+    fn from(case: &'a Case) -> Self {
+        Self {
+            integrand: case,
+            integral: case.integral,
+            bounds: case.name.starts_with("indicator").then_some([0.0, 1.0]),
+        }
+    }
 }
 
 impl Trial {

@@ -114,14 +114,16 @@ fn tied<V: Value>(means: &[V]) -> Option<Warning> {
             steps
         },
     );
+    if 2.0 * fewest > means.len() as f64 {
+        return None;
+    }
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "a small count"
     )]
-    (2.0 * fewest <= means.len() as f64).then(|| Warning::Tied {
-        distinct: fewest as u64,
-    })
+    let distinct = fewest as u64;
+    Some(Warning::Tied { distinct })
 }
 
 tallied!([P: PointSet, F: Fn(u64) -> P] Median<F>);

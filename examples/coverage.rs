@@ -89,7 +89,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
 
 fn json(Row { integrand, trial }: &Row) -> serde_json::Value {
     serde_json::json!({
-        "integrand": integrand, "method": trial.method.name(), "kind": trial.method.error_bar(),
+        "integrand": integrand, "method": trial.method.name(), "kind": trial.error_bar,
         "runs": trial.runs, "covered": trial.covered, "warned": trial.warned, "warning": trial.warning,
         "missed_without_warning": trial.missed_without_warning, "error": trial.error, "width": trial.width,
         "holds": trial.holds(), "honest": trial.is_honest(),
@@ -141,7 +141,7 @@ fn table(arguments: &Arguments, genz: &[Row], stiff: &[Row]) -> Result<String, s
                 text,
                 "| {integrand} | {} | {} | {bold}{:.3}{bold} | {warned} | {:.1e} | {:.1e} |",
                 trial.method.name(),
-                trial.method.error_bar(),
+                trial.error_bar,
                 trial.covered,
                 trial.error,
                 trial.width

@@ -39,17 +39,6 @@ impl Method {
         }
     }
 
-    /// The kind of its error bar.
-    pub(crate) fn error_bar(self) -> &'static str {
-        match self {
-            Self::Plain => "sample variance",
-            Self::Strata | Self::Neyman | Self::Vegas => "strata",
-            Self::Sobol => "replicates",
-            Self::Median => "median",
-            Self::Bounded => "bounded",
-        }
-    }
-
     /// An estimate from about `count` evaluations; `None` where the method does not apply.
     pub(crate) fn estimate(
         self,

@@ -11,6 +11,8 @@ pub(crate) const LEVEL: f64 = 0.95;
 /// What many runs of one method on one integrand gave.
 pub(crate) struct Trial {
     pub(crate) method: Method,
+    /// The kind of its error bar.
+    pub(crate) error_bar: String,
     pub(crate) runs: u64,
     /// Root mean square error, relative to the integral; absolute where that is zero.
     pub(crate) error: f64,
@@ -62,7 +64,9 @@ impl Trial {
         let Some(results) = results.into_iter().collect::<Option<Result<Vec<_>, _>>>() else {
             return Ok(None);
         };
-        let results: Vec<Run> = results?
+        let estimates = results?;
+        let error_bar = estimates.first().map(|one| one.error_bar.to_string());
+        let results: Vec<Run> = estimates
             .into_iter()
             .map(|estimate| Run::new(estimate, subject.integral))
             .collect();
@@ -70,6 +74,7 @@ impl Trial {
         let part = |f: &dyn Fn(&Run) -> bool| mean(&|run| f64::from(u8::from(f(run))));
         Ok(Some(Self {
             method,
+            error_bar: error_bar.unwrap_or_default(),
             runs,
             error: mean(&|run| run.off * run.off).sqrt(),
             width: mean(&|run| run.half_width),

@@ -12,6 +12,8 @@ mod edges;
 mod energy;
 #[path = "bsdf/mitsuba.rs"]
 mod mitsuba;
+#[path = "bsdf/rooms.rs"]
+mod rooms;
 
 use core::f32::consts::PI;
 

@@ -548,7 +548,7 @@ fn hidden_lights_light_but_are_not_seen() {
     };
     let (all, hiding) = (Paths::default(), Paths::default().hiding_lights());
     // Through the lamp at the floor: what is seen from below the lamp.
-    let (above, below, target) = ([0.0, 2.0, 1.0], [0.0, 0.6, 0.3], [0.0; 3]);
+    let (above, below, target) = ([0.0, 2.0, 0.1], [0.0, 0.6, 0.03], [0.0; 3]);
     assert_eq!(render(all, above, target), 5.0);
     let (through, beyond) = (render(hiding, above, target), render(all, below, target));
     assert!((through / beyond - 1.0).abs() < 1e-3, "{through} {beyond}");

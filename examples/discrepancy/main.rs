@@ -55,7 +55,7 @@ struct Arguments {
         long,
         value_delimiter = ',',
         value_name = "WEIGHTS",
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     weights: Option<Vec<f64>>,
     /// The base of a net

@@ -272,14 +272,15 @@ impl Sweep<'_> {
         }
         let values = values.start / 1.5..values.end * 1.5;
         area.fill(&WHITE)?;
-        let replicates = format!(
-            "{} in {} dimensions; random sets: mean of {}",
-            self.name(),
-            self.dimensions,
-            self.replicates
-        );
+        let mut caption = format!("{} in {} dimensions", self.name(), self.dimensions);
+        if samples().any(|sample| sample.replicates > 1) {
+            caption += &format!("; random sets: mean of {}", self.replicates);
+        }
+        if samples().any(|sample| sample.kind != "exact") {
+            caption += "; lower bounds among them";
+        }
         let mut chart = ChartBuilder::on(area)
-            .caption(replicates, ("sans-serif", 26))
+            .caption(caption, ("sans-serif", 26))
             .margin(16)
             .x_label_area_size(56)
             .y_label_area_size(92)

@@ -81,6 +81,12 @@ pub trait Bsdf: Sync {
     /// [`evaluate`](Self::evaluate) is zero and no light is worth sampling.
     fn is_delta(&self) -> bool;
 
+    /// The law as [`Lambertian`], if it is that: a scene of nothing else may be traced many paths at once. `None` unless
+    /// implemented.
+    fn as_lambertian(&self) -> Option<&Lambertian> {
+        None
+    }
+
     /// The value for a pair of directions, times the cosine of `into`, and the density with which
     /// [`sample`](Self::sample) draws `into`. Single directions do not count.
     fn evaluate(&self, at: &Surface<Self::Detail>, out: Vec3A, into: Vec3A) -> Scattering;

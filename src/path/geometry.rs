@@ -1,6 +1,7 @@
 //! All shapes of a scene, and which of them a ray meets.
 
 mod copies;
+mod kind;
 mod soup;
 mod sweep;
 mod tree;
@@ -9,12 +10,16 @@ use glam::Vec3A;
 
 use super::Shading;
 use super::ray::{Ray, Surface};
+#[cfg(feature = "simd")]
+use super::shape::Flat;
 use super::shape::{Mesh, Primitive, Shape};
 
 pub(in crate::path) use copies::Copied;
 use copies::Copies;
+#[cfg(feature = "simd")]
+pub(in crate::path) use kind::{Kind, axis};
 use soup::Soup;
-use sweep::Sweep;
+pub(in crate::path) use sweep::Sweep;
 use tree::Tree;
 
 /// The shapes of a scene, and a way to find them.
@@ -147,6 +152,34 @@ impl Geometry {
             (Some(shape), _) => shape.shading(&hit.surface),
             (None, Some(soup)) => soup.shading(hit.triangle, &hit.surface),
             (None, None) => unreachable!("a hit is of a shape or of a mesh"),
+        }
+    }
+
+    /// The shapes, if they are few and all there is.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn few(&self) -> Option<(&[Primitive], &Sweep)> {
+        match &self.search {
+            Search::Sweep(sweep) if self.soup.is_none() && self.copies.is_none() => {
+                Some((&self.shapes, sweep))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a flat shape can be in the way between two points of the scene.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn divides(&self, flat: &Flat) -> bool {
+        kind::divides(flat, &self.shapes)
+    }
+
+    /// Whether any shape is in the way from one point of the scene to another, at `limit`.
+    #[inline]
+    pub(in crate::path) fn divided(&self, ray: &Ray, limit: f32) -> bool {
+        match &self.search {
+            Search::Sweep(sweep) if self.soup.is_none() && self.copies.is_none() => {
+                sweep.divided(ray, limit)
+            }
+            _ => self.occluded(ray, limit),
         }
     }
 

@@ -47,6 +47,12 @@ pub trait Light: Sync + Sized {
     /// [`Error::Refused`] for a number of emitters that this type is not made for.
     fn new(emitters: Vec<Emitter>) -> Result<Self, Error>;
 
+    /// The lights as [`AreaLights`], if they are that, perhaps none: a scene of such lights may be traced many paths at
+    /// once. `None` unless implemented.
+    fn as_area_lights(&self) -> Option<&AreaLights> {
+        None
+    }
+
     /// The way to a point of the lights, drawn from the coordinates of `u` so as to light the surface `from` well.
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination>;
 
@@ -139,6 +145,11 @@ impl Light for NoLight {
                 emitters.len(),
             ))
         }
+    }
+
+    fn as_area_lights(&self) -> Option<&AreaLights> {
+        static NONE: AreaLights = AreaLights::NONE;
+        Some(&NONE)
     }
 
     #[inline]

@@ -6,7 +6,7 @@ use super::Ray;
 use super::bsdf::Bsdf;
 use super::light::{Environment, Light};
 use super::scene::Scene;
-use crate::integrands::{Heuristic, Survival};
+use crate::integrands::Survival;
 use crate::{Error, Sampler};
 
 /// Which paths of light are followed.
@@ -14,9 +14,9 @@ use crate::{Error, Sampler};
 /// By default all: paths end by Russian roulette, without bias, from their fifth segment on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Paths {
-    longest: u32,
-    roulette_from: u32,
-    hides_lights: bool,
+    pub(in crate::path) longest: u32,
+    pub(in crate::path) roulette_from: u32,
+    pub(in crate::path) hides_lights: bool,
 }
 
 impl Default for Paths {
@@ -122,17 +122,9 @@ impl Paths {
             throughput *= next.weight;
             eta *= next.eta;
             if segment >= self.roulette_from {
-                let carried = f64::from(throughput.max_element() * (eta * eta));
-                // A black path is common, and an error for each would be slow. NaN goes on, to be seen.
-                if carried <= 0.0 {
-                    break;
-                }
-                let survival = Survival::new(carried.min(0.95)).ok();
-                let Some(weight) = survival.and_then(|survival| survival.play(u.next_1d())) else {
+                let Some(weight) = play(throughput.max_element() * (eta * eta), u) else {
                     break;
                 };
-                #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-                let weight = weight as f32;
                 throughput *= weight;
             }
             density = next.density;
@@ -145,11 +137,27 @@ impl Paths {
     }
 }
 
+/// Russian roulette: the weight of a path that goes on, `None` for one that ends, from what the path still carries.
+#[inline]
+pub(in crate::path) fn play<S: Sampler>(carried: f32, u: &mut S) -> Option<f32> {
+    // A black path is common, and an error for each would be slow. NaN goes on, to be seen.
+    if carried <= 0.0 {
+        return None;
+    }
+    let survival = Survival::new(f64::from(carried).min(0.95)).ok()?;
+    let weight = survival.play(u.next_1d())?;
+    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+    Some(weight as f32)
+}
+
 /// The weight of a sample that was drawn with density `own`, where another technique has the density `other`: the
-/// power heuristic. The density of a direction without alternative is infinite, its weight 1.
+/// power heuristic, as [`Heuristic::Power`](crate::integrands::Heuristic::Power) has it, in `f32`. The density of a direction
+/// without alternative is infinite, its weight 1.
 #[inline]
 pub(super) fn power(own: f32, other: f32) -> f32 {
-    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-    let weight = Heuristic::Power.weight(own.into(), &[other.into()]) as f32;
-    weight
+    if !(own > 0.0) {
+        return 0.0;
+    }
+    let ratio = if own == other { 1.0 } else { other / own };
+    1.0 / (1.0 + ratio * ratio)
 }

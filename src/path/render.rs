@@ -9,8 +9,10 @@ use super::bsdf::Bsdf;
 use super::filter::{BoxFilter, Filter};
 use super::image::{Image, Row};
 use super::light::{Environment, Light};
+#[cfg(feature = "simd")]
+use super::packet::Packet;
 use super::sensor::Sensor;
-use super::{Paths, Scene};
+use super::{Paths, Ray, Scene};
 use crate::points::pixel;
 use crate::{Error, Estimate, Estimator, Incomplete, Integrand, Outcome, Sampler, each};
 
@@ -35,22 +37,73 @@ pub struct Pixel<'a, B, L, E, C, F = BoxFilter> {
 /// Coordinates computed ahead: those of the film and of two surfaces. Few paths end before.
 const AHEAD: u32 = 10;
 
+/// Coordinates computed ahead of paths in packets, where a path that needs more of them than others holds them up.
+#[cfg(feature = "simd")]
+const AHEAD_OF_PACKETS: u32 = 34;
+
+impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Pixel<'_, B, L, E, C, F> {
+    /// The ray of a path, and what its radiance counts.
+    #[inline]
+    fn start<S: Sampler>(&self, u: &mut S) -> Start {
+        let seen = self.filter.sample(self.position, self.size, u.next_2d());
+        let film = core::array::from_fn(|axis| seen.point[axis] / f64::from(self.size[axis]));
+        Start {
+            ray: self.sensor.ray(film, u),
+            weight: seen.weight,
+        }
+    }
+}
+
+#[cfg(feature = "simd")]
+impl<B, L, E, C, F> Pixel<'_, B, L, E, C, F> {
+    /// The scene for many paths at once, if it is one of those and the paths are too.
+    #[inline]
+    fn packet(&self) -> Option<&Packet> {
+        if self.paths.hides_lights {
+            return None;
+        }
+        self.scene.packet()
+    }
+}
+
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
     for Pixel<'_, B, L, E, C, F>
 {
     type Value = Vec3;
 
+    const AT_ONCE: usize = 256;
+
     #[inline]
     fn evaluate<S: Sampler>(&self, u: &mut S) -> Vec3 {
-        let seen = self.filter.sample(self.position, self.size, u.next_2d());
-        let film = core::array::from_fn(|axis| seen.point[axis] / f64::from(self.size[axis]));
-        let ray = self.sensor.ray(film, u);
-        self.paths.radiance(self.scene, ray, u) * seen.weight
+        let Start { ray, weight } = self.start(u);
+        self.paths.radiance(self.scene, ray, u) * weight
+    }
+
+    #[inline]
+    fn evaluate_many<S: Sampler>(&self, samplers: &mut [S], values: &mut [Vec3]) {
+        #[cfg(feature = "simd")]
+        if let Some(packet) = self.packet() {
+            return packet.radiance(self.paths, |u| self.start(u), samplers, values);
+        }
+        for (u, value) in samplers.iter_mut().zip(values) {
+            *value = self.evaluate(u);
+        }
     }
 
     fn dimensions(&self) -> u32 {
+        #[cfg(feature = "simd")]
+        if self.packet().is_some() {
+            return AHEAD_OF_PACKETS;
+        }
         AHEAD
     }
+}
+
+/// Where a path begins, and what it counts.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::path) struct Start {
+    pub(in crate::path) ray: Ray,
+    pub(in crate::path) weight: f32,
 }
 
 /// What to render, and from where.

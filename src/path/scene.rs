@@ -8,6 +8,8 @@ use super::bsdf::{Bsdf, Material};
 use super::color;
 use super::geometry::{Copied, Geometry, Hit};
 use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment, Picture};
+#[cfg(feature = "simd")]
+use super::packet::{Emitted, Optics, Packet};
 use super::ray::{Ray, Surface, gamma};
 use super::shape::{Mesh, Primitive};
 use super::texture::{self, Parameter, Texture};
@@ -136,6 +138,8 @@ pub struct Scene<B = Material, L = AreaLights, E = NoEnvironment> {
     bsdfs: Vec<B>,
     lights: L,
     environment: E,
+    #[cfg(feature = "simd")]
+    packet: Option<Box<Packet>>,
 }
 
 /// What belongs to a shape.
@@ -213,13 +217,50 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
                 copies.push(Copied::new(Arc::clone(&group), start, place)?);
             }
         }
-        Ok(Self {
+        #[cfg_attr(
+            not(feature = "simd"),
+            expect(unused_mut, reason = "there are no packets")
+        )]
+        let mut scene = Self {
             geometry: Geometry::new(shapes, meshes, copies),
             owners: parts.owners,
             bsdfs: parts.bsdfs,
             lights: L::new(parts.emitters)?,
             environment,
-        })
+            #[cfg(feature = "simd")]
+            packet: None,
+        };
+        #[cfg(feature = "simd")]
+        {
+            scene.packet = scene.packed().map(Box::new);
+        }
+        Ok(scene)
+    }
+
+    /// The scene for many paths at once, if it is one of those.
+    #[cfg(feature = "simd")]
+    fn packed(&self) -> Option<Packet> {
+        let sky = self.environment.constant()?;
+        let lights = self.lights.as_area_lights()?;
+        let optics = |shape: usize| {
+            let owner = self.owners[shape];
+            let law = self.bsdfs[owner.bsdf as usize].as_lambertian()?;
+            let emitted = if owner.emitter == DARK {
+                None
+            } else {
+                Some(Emitted {
+                    emitter: owner.emitter,
+                    radiance: lights.radiance(owner.emitter)?,
+                    probability: lights.probability(owner.emitter),
+                })
+            };
+            Some(Optics {
+                albedo: law.albedo,
+                inner: true,
+                emitted,
+            })
+        };
+        Packet::new(&self.geometry, optics, lights, sky)
     }
 }
 
@@ -327,6 +368,13 @@ impl<B, L, E> Scene<B, L, E> {
         &self.lights
     }
 
+    /// The scene for many paths at once, if it is one of those.
+    #[cfg(feature = "simd")]
+    #[inline]
+    pub(in crate::path) fn packet(&self) -> Option<&Packet> {
+        self.packet.as_deref()
+    }
+
     /// What is around the shapes.
     #[inline]
     pub fn environment(&self) -> &E {
@@ -336,7 +384,10 @@ impl<B, L, E> Scene<B, L, E> {
     /// Whether any shape is in the way.
     #[inline]
     pub fn occluded(&self, segment: &Segment) -> bool {
-        self.geometry.occluded(&segment.ray, segment.length)
+        match segment.end {
+            End::Surface => self.geometry.divided(&segment.ray, segment.length),
+            End::Open => self.geometry.occluded(&segment.ray, segment.length),
+        }
     }
 }
 
@@ -348,6 +399,16 @@ pub struct Segment {
     /// How far it is to a margin off the other, less the rounding error of a distance; infinite where there is no other
     /// end.
     pub length: f32,
+    end: End,
+}
+
+/// What is at the end of a way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    /// A surface of the scene. So the way is inside the scene, where fewer shapes can be in it.
+    Surface,
+    /// Anything else.
+    Open,
 }
 
 impl Segment {
@@ -355,13 +416,13 @@ impl Segment {
     #[inline]
     pub fn between<D>(here: &Surface<D>, there: &Surface) -> Option<Self> {
         let toward = there.point - here.point;
-        Self::joining(here.leave(toward), there.leave(-toward))
+        Self::joining(here.leave(toward), there.leave(-toward), End::Surface)
     }
 
     /// The way from a surface to a point off all surfaces; `None` where they are not told apart.
     #[inline]
     pub fn to_point<D>(here: &Surface<D>, there: Vec3A) -> Option<Self> {
-        Self::joining(here.leave(there - here.point), there)
+        Self::joining(here.leave(there - here.point), there, End::Open)
     }
 
     /// The way from a surface in a direction of length 1, without end.
@@ -373,19 +434,21 @@ impl Segment {
                 direction,
             },
             length: f32::INFINITY,
+            end: End::Open,
         }
     }
 
     #[inline]
-    fn joining(origin: Vec3A, end: Vec3A) -> Option<Self> {
-        let way = end - origin;
+    fn joining(origin: Vec3A, to: Vec3A, end: End) -> Option<Self> {
+        let way = to - origin;
         let length = way.length();
         (length > 0.0).then(|| Self {
             ray: Ray {
                 origin,
-                direction: way / length,
+                direction: way * length.recip(),
             },
             length: length * (1.0 - gamma(8)),
+            end,
         })
     }
 }

@@ -15,7 +15,7 @@ use crate::{Error, Sampler};
 /// Two coordinates draw a direction, with the density `cosine / pi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lambertian {
-    albedo: Vec3A,
+    pub(in crate::path) albedo: Vec3A,
 }
 
 impl Lambertian {
@@ -84,6 +84,10 @@ impl Law for Lambertian {
 
 impl Bsdf for Lambertian {
     type Detail = ();
+
+    fn as_lambertian(&self) -> Option<&Self> {
+        Some(self)
+    }
 
     #[inline]
     fn is_delta(&self) -> bool {

@@ -208,6 +208,13 @@ impl<P: Parameter> Law for Material<P> {
 impl<P: Parameter> super::Bsdf for Material<P> {
     type Detail = <P::Place as Place>::Detail;
 
+    fn as_lambertian(&self) -> Option<&Lambertian> {
+        match self {
+            Self::Lambertian(law) => Some(law),
+            _ => None,
+        }
+    }
+
     #[inline]
     fn is_delta(&self) -> bool {
         Law::is_delta(self)

@@ -8,7 +8,7 @@ use crate::path::shape::Shape;
 use crate::path::{Segment, Surface};
 use crate::{Error, Sampler};
 
-/// Shapes that emit light from their outer sides.
+/// Shapes that emit light from their outer sides; none at all is a number too.
 ///
 /// Two coordinates draw a point, however many shapes there are: the first also chooses the shape, in
 /// proportion to its power, and what is left of it is a coordinate again.
@@ -35,12 +35,34 @@ impl Choice {
 }
 
 impl AreaLights {
+    /// No lights.
+    pub(super) const NONE: Self = Self {
+        emitters: Vec::new(),
+        choices: Vec::new(),
+    };
+
+    /// The probability with which an emitter is chosen.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn probability(&self, emitter: u32) -> f32 {
+        self.choices[emitter as usize].times(1.0)
+    }
+
+    /// What an emitter emits, if it is the same everywhere.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn radiance(&self, emitter: u32) -> Option<Vec3A> {
+        let emitter = &self.emitters[emitter as usize];
+        emitter.picture.is_none().then_some(emitter.radiance)
+    }
+
     /// Which emitter the coordinate chooses, and what is left of the coordinate.
     #[inline]
-    fn choose(&self, u: f64) -> (usize, f64) {
+    pub(in crate::path) fn choose(&self, u: f64) -> (usize, f64) {
         let [_, rest @ ..] = &self.choices[..] else {
             return (0, u);
         };
+        if rest.is_empty() {
+            return (0, u);
+        }
         let chosen = rest.partition_point(|choice| choice.before <= u);
         let Choice {
             probability,
@@ -53,7 +75,7 @@ impl AreaLights {
 impl Light for AreaLights {
     fn new(emitters: Vec<Emitter>) -> Result<Self, Error> {
         let total: f64 = emitters.iter().map(Emitter::power).sum();
-        if !(total > 0.0 && total.is_finite()) {
+        if !(emitters.is_empty() || total > 0.0 && total.is_finite()) {
             return Err(Error::refused(
                 "power of all lights together",
                 "positive and finite",
@@ -74,11 +96,15 @@ impl Light for AreaLights {
         Ok(Self { emitters, choices })
     }
 
+    fn as_area_lights(&self) -> Option<&Self> {
+        Some(self)
+    }
+
     #[inline]
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
         let [a, b] = u.next_2d();
         let (chosen, a) = self.choose(a);
-        let emitter = &self.emitters[chosen];
+        let emitter = self.emitters.get(chosen)?;
         let there = emitter.shape.sample(from.point, singles([a, b]));
         let density = self.choices[chosen].times(emitter.shape.density(from.point, &there));
         let lit = there.normal.dot(from.point - there.point) > 0.0;
@@ -87,7 +113,7 @@ impl Light for AreaLights {
         }
         Some(Illumination {
             way: Segment::between(from, &there)?,
-            weight: emitter.radiance_at(&there) / density,
+            weight: emitter.radiance_at(&there) * density.recip(),
             density,
         })
     }

@@ -27,12 +27,12 @@ pub struct Flat {
     /// 1 for a triangle, 0 for a parallelogram: with it `s + slant * t <= 1` and `t + slant * s <= 1` hold
     /// inside either.
     pub(in crate::path) slant: f32,
-    first_edge: Vec3A,
-    second_edge: Vec3A,
+    pub(in crate::path) first_edge: Vec3A,
+    pub(in crate::path) second_edge: Vec3A,
     /// How far inside the edges points are kept: so far that a ray from there cannot miss a neighbour at the edge.
-    inset: [f32; 2],
-    margin: f32,
-    area: f32,
+    pub(in crate::path) inset: [f32; 2],
+    pub(in crate::path) margin: f32,
+    pub(in crate::path) area: f32,
     /// Whether the edges have changed places, which texture coordinates do not follow.
     turned: bool,
 }
@@ -168,7 +168,7 @@ impl Shape for Flat {
     #[inline]
     fn intersect(&self, ray: &Ray, limit: f32) -> Option<f32> {
         let offset = self.corner - ray.origin;
-        let distance = offset.dot(self.normal) / ray.direction.dot(self.normal);
+        let distance = offset.dot(self.normal) * ray.direction.dot(self.normal).recip();
         let inside = ray.direction * distance - offset;
         let s = inside.dot(self.first_dual);
         let t = inside.dot(self.second_dual);

@@ -96,6 +96,15 @@ impl Sphere {
         self.radius
     }
 
+    /// Whether a point at this squared distance from the centre is inside, or on the sphere up to rounding: there
+    /// is no cone that the sphere fills.
+    #[inline]
+    fn holds(&self, squared: f32) -> bool {
+        let margin = gamma(8) * (self.center.abs().element_sum() + 2.0 * self.radius);
+        let reach = self.radius + margin;
+        squared <= reach * reach
+    }
+
     #[inline]
     fn toward(&self, outward: Vec3A) -> Surface {
         Surface {
@@ -169,7 +178,7 @@ impl Shape for Sphere {
         4.0 * PI * self.squared_radius
     }
 
-    /// From outside uniform in the cone that the sphere fills,[^shirley] from inside uniform on the area.
+    /// From outside uniform in the cone that the sphere fills,[^shirley] from inside and on it uniform on the area.
     ///
     /// [^shirley]: Shirley, Peter; Wang, Changyaw; Zimmerman, Kurt (1996). *Monte Carlo Techniques for Direct
     ///     Lighting Calculations*. <https://doi.org/10.1145/226150.226151>
@@ -178,7 +187,7 @@ impl Shape for Sphere {
         let offset = from - self.center;
         let squared = offset.length_squared();
         let [cosine, sine] = turn(b);
-        if squared <= self.squared_radius {
+        if self.holds(squared) {
             let z = 1.0 - 2.0 * a;
             let r = (1.0 - z * z).max(0.0).sqrt();
             return self.toward(Vec3A::new(r * cosine, r * sine, z));
@@ -197,7 +206,7 @@ impl Shape for Sphere {
     #[inline]
     fn density(&self, from: Vec3A, surface: &Surface) -> f32 {
         let squared = (from - self.center).length_squared();
-        if squared <= self.squared_radius {
+        if self.holds(squared) {
             return density_of_area(from, surface, self.area());
         }
         0.5 / (PI * one_minus_cosine(self.squared_radius / squared))

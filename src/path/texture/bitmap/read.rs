@@ -67,6 +67,18 @@ mod tests {
     use super::*;
 
     #[test]
+    fn floating_point_files_are_linear() {
+        let path = std::env::temp_dir().join(format!("estimand-{}.exr", std::process::id()));
+        let pixels = vec![glam::DVec3::new(0.25, 4.0, 0.0), glam::DVec3::splat(0.5)];
+        let image = crate::path::Image::new(2, pixels).unwrap();
+        image.write_exr(&path).unwrap();
+        let bitmap = Bitmap::read(&path);
+        std::fs::remove_file(&path).unwrap();
+        let left = bitmap.unwrap().color_at(glam::Vec2::new(0.25, 0.5));
+        assert_eq!(left.to_array(), [0.25, 4.0, 0.0]);
+    }
+
+    #[test]
     fn files_are_read_with_and_without_the_curve() {
         let path = std::env::temp_dir().join(format!("estimand-{}.png", std::process::id()));
         let image = image::RgbaImage::from_raw(1, 2, vec![255, 51, 0, 9, 0, 51, 255, 200]);

@@ -15,52 +15,84 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
+/// How many sums a block keeps side by side: values go to them in turn, so that the machine adds several at once.
+const LANES: usize = 2;
+
 /// Sums of one short block of values, each relative to the block's first: two additions and one
 /// multiplication a component, no division.
 ///
 /// The shift costs few digits because it is one of the values: with `m` the sum of squared deviations
 /// from the mean, `(first - mean)^2 <= m`, hence `squares = m + n (first - mean)^2 <= (n + 1) m`, and
-/// for a block of 1024 the subtraction in [`moments`](Self::moments) loses at most three of sixteen
+/// for a block of 1024 the subtraction in [`piece`](Self::piece) loses at most three of sixteen
 /// digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Block<V> {
     count: u64,
     first: V,
-    sum: V,
-    squares: V,
-    low: V,
-    high: V,
+    sums: [V; LANES],
+    squares: [V; LANES],
+    lows: [V; LANES],
+    highs: [V; LANES],
 }
 
 impl<V: Value> Block<V> {
     pub(crate) const EMPTY: Self = Self {
         count: 0,
         first: V::ZERO,
-        sum: V::ZERO,
-        squares: V::ZERO,
-        low: V::ZERO,
-        high: V::ZERO,
+        sums: [V::ZERO; LANES],
+        squares: [V::ZERO; LANES],
+        lows: [V::ZERO; LANES],
+        highs: [V::ZERO; LANES],
     };
 
-    #[inline]
+    /// Adds a value.
     pub(crate) fn push(&mut self, value: V) {
-        if self.count == 0 {
-            self.first = value;
-            self.low = value;
-            self.high = value;
+        self.extend(&[value], |value| value);
+    }
+
+    /// Adds values one after the other, made of `values` by `widen`.
+    pub(crate) fn extend<N: Copy>(&mut self, values: &[N], widen: impl Fn(N) -> V) {
+        let Some(&first) = values.first() else { return };
+        let mut block = *self;
+        if block.count == 0 {
+            block.first = widen(first);
+            block.lows = [block.first; LANES];
+            block.highs = block.lows;
         }
-        self.count += 1;
-        self.low = self.low.zip(value, smaller);
-        self.high = self.high.zip(value, larger);
+        // As many as make the lanes even, then all of them at once, then the rest.
+        #[expect(clippy::cast_possible_truncation, reason = "below the number of lanes")]
+        let odd = (block.count.wrapping_neg() % LANES as u64) as usize;
+        let (before, values) = values.split_at(odd.min(values.len()));
+        let (groups, after) = values.as_chunks::<LANES>();
+        for (value, lane) in before.iter().zip(LANES - odd..) {
+            block.add(lane, widen(*value));
+        }
+        for group in groups {
+            for (lane, value) in group.iter().enumerate() {
+                block.add(lane, widen(*value));
+            }
+        }
+        for (lane, value) in after.iter().enumerate() {
+            block.add(lane, widen(*value));
+        }
+        block.count += (before.len() + values.len()) as u64;
+        *self = block;
+    }
+
+    #[inline]
+    fn add(&mut self, lane: usize, value: V) {
+        self.lows[lane] = self.lows[lane].zip(value, smaller);
+        self.highs[lane] = self.highs[lane].zip(value, larger);
         let shifted = value.zip(self.first, |x, first| x - first);
-        self.sum = self.sum.zip(shifted, |sum, d| sum + d);
-        self.squares = self.squares.zip(shifted, |squares, d| squares + d * d);
+        self.sums[lane] = self.sums[lane].zip(shifted, |sum, d| sum + d);
+        self.squares[lane] = self.squares[lane].zip(shifted, |squares, d| squares + d * d);
     }
 
     /// Whether all sums are finite; once they are not, they stay so.
     pub(crate) fn is_finite(&self) -> bool {
-        self.first.is_finite() && self.sum.is_finite() && self.squares.is_finite()
+        let [sum, squares] = [self.sums, self.squares].map(|lanes| fold(lanes, |a, b| a + b));
+        self.first.is_finite() && sum.is_finite() && squares.is_finite()
     }
 
     /// What the block has given, or `None` if plain arithmetic does not do: a value that is not finite,
@@ -70,12 +102,14 @@ impl<V: Value> Block<V> {
         const ORDINARY: core::ops::Range<f64> = 1e-250..1e300;
         let count = self.count as f64;
         let mut ordinary = self.first.is_finite();
-        let mean = self.first.zip(self.sum, |first, sum| first + sum / count);
-        let root = self.squares.zip(self.sum, |squares, sum| {
+        let [sum, squares] = [self.sums, self.squares].map(|lanes| fold(lanes, |a, b| a + b));
+        let (low, high) = (fold(self.lows, smaller), fold(self.highs, larger));
+        let mean = self.first.zip(sum, |first, sum| first + sum / count);
+        let root = squares.zip(sum, |squares, sum| {
             (squares - sum * (sum / count)).max(0.0).sqrt()
         });
-        let range = self.high.zip(self.low, |high, low| high - low);
-        let _ = range.zip(self.squares, |range, squares| {
+        let range = high.zip(low, |high, low| high - low);
+        let _ = range.zip(squares, |range, squares| {
             // NaN among equal values is in the squares alone, spread too small for its squares in the range alone.
             let constant = range == 0.0 && squares == 0.0;
             ordinary &= constant || ORDINARY.contains(&squares);
@@ -84,8 +118,15 @@ impl<V: Value> Block<V> {
         ordinary.then(|| Piece {
             moments: Moments::from_parts(self.count, mean, root),
             rejected: 0,
-            low: self.low,
-            high: self.high,
+            low,
+            high,
         })
     }
+}
+
+/// What the lanes are together.
+fn fold<V: Value>(lanes: [V; LANES], mut join: impl FnMut(f64, f64) -> f64) -> V {
+    let [first, rest @ ..] = lanes;
+    rest.into_iter()
+        .fold(first, |all, lane| all.zip(lane, &mut join))
 }

@@ -23,7 +23,15 @@ pub(crate) trait Source: Sync {
 
 /// What is done at each point.
 pub(crate) trait Visit {
-    fn point<S: Sampler>(&mut self, index: u64, u: S) -> ControlFlow<()>;
+    /// At the points `indices`, each of which begins in the stream `u` where the one before it ended; `begin` is told when.
+    fn stream<S: Sampler>(&mut self, indices: Range<u64>, u: &mut S, begin: impl Fn(&mut S));
+
+    /// At points from `first` on that can be read in any order. Breaks off if no others are wanted.
+    fn points<S: Sampler>(
+        &mut self,
+        first: u64,
+        points: impl Iterator<Item = S>,
+    ) -> ControlFlow<()>;
 }
 
 /// Coordinates computed ahead per call of `fill`: 32 KiB, which the first-level cache holds.
@@ -40,11 +48,8 @@ impl<P: PointSet> Source for P {
         let dimensions = dimensions.min(self.dimensions());
         let width = dimensions as usize;
         if width == 0 || width > AHEAD {
-            for index in indices {
-                if visit.point(index, self.point(index)).is_break() {
-                    return;
-                }
-            }
+            let first = indices.start;
+            let _ = visit.points(first, indices.map(|index| self.point(index)));
             return;
         }
         // A power of two: nets fill such blocks fastest.
@@ -52,19 +57,17 @@ impl<P: PointSet> Source for P {
         let mut room = ROOM.take();
         room.resize(AHEAD, 0.0);
         let (mut index, end) = (indices.start, indices.end);
-        'points: while index < end {
+        while index < end {
             let rows = usize::try_from(end - index).map_or(most, |left| left.min(most));
             let ahead = &mut room[..rows * width];
             self.fill(index, 0..dimensions, ahead);
-            for prefix in ahead.chunks_exact(width) {
-                if visit
-                    .point(index, Cursor::with_prefix(self, index, prefix))
-                    .is_break()
-                {
-                    break 'points;
-                }
-                index += 1;
+            let points = (index..)
+                .zip(ahead.chunks_exact(width))
+                .map(|(index, prefix)| Cursor::with_prefix(self, index, prefix));
+            if visit.points(index, points).is_break() {
+                break;
             }
+            index += rows as u64;
         }
         ROOM.set(room);
     }
@@ -168,10 +171,7 @@ fn block<I: Integrand, S: Source>(
 ) -> Part<Wide<I>> {
     let complete = tail == Tail::Closed || indices.end.is_multiple_of(BLOCK);
     if complete && open.is_none() {
-        let mut fast = Fast {
-            integrand,
-            block: Block::EMPTY,
-        };
+        let mut fast = Fast::new(integrand);
         source.points(indices.clone(), 0, integrand.dimensions(), &mut fast);
         if let Some(piece) = fast.block.piece() {
             return Part::Closed(piece);
@@ -209,13 +209,78 @@ fn careful<I: Integrand, S: Source>(
 struct Fast<'a, I: Integrand> {
     integrand: &'a I,
     block: Block<Wide<I>>,
+    /// Room for values that are added to the block together: its sums are then kept in registers.
+    values: Vec<I::Value>,
+}
+
+impl<'a, I: Integrand> Fast<'a, I> {
+    /// As many values as are worth while, fewer large ones: their room is to stay in the first-level cache.
+    const GROUP: usize = {
+        let most = match size_of::<I::Value>() {
+            0 => 64,
+            size => 512_usize.div_ceil(size).next_multiple_of(2),
+        };
+        if most > I::AT_ONCE { most } else { I::AT_ONCE }
+    };
+
+    fn new(integrand: &'a I) -> Self {
+        Self {
+            integrand,
+            block: Block::EMPTY,
+            values: vec![I::Value::ZERO; Self::GROUP],
+        }
+    }
+
+    /// Adds the first values of the room to the block.
+    fn add(&mut self, count: usize) {
+        self.block.extend(&self.values[..count], Value::widen);
+    }
 }
 
 impl<I: Integrand> Visit for Fast<'_, I> {
-    #[inline]
-    fn point<S: Sampler>(&mut self, _: u64, mut u: S) -> ControlFlow<()> {
-        self.block.push(self.integrand.evaluate(&mut u).widen());
-        ControlFlow::Continue(())
+    fn stream<S: Sampler>(&mut self, indices: Range<u64>, u: &mut S, begin: impl Fn(&mut S)) {
+        let mut left = indices.end - indices.start;
+        while left > 0 {
+            let count = usize::try_from(left).map_or(Self::GROUP, |left| left.min(Self::GROUP));
+            for value in &mut self.values[..count] {
+                begin(u);
+                *value = self.integrand.evaluate(u);
+            }
+            self.add(count);
+            left -= count as u64;
+        }
+    }
+
+    fn points<S: Sampler>(
+        &mut self,
+        _: u64,
+        mut points: impl Iterator<Item = S>,
+    ) -> ControlFlow<()> {
+        if I::AT_ONCE > 1 {
+            let mut samplers = Vec::with_capacity(I::AT_ONCE);
+            loop {
+                samplers.extend(points.by_ref().take(I::AT_ONCE));
+                let count = samplers.len();
+                if count == 0 {
+                    return ControlFlow::Continue(());
+                }
+                let values = &mut self.values[..count];
+                self.integrand.evaluate_many(&mut samplers, values);
+                self.add(count);
+                samplers.clear();
+            }
+        }
+        loop {
+            let mut count = 0;
+            for (value, mut u) in self.values.iter_mut().zip(points.by_ref()) {
+                *value = self.integrand.evaluate(&mut u);
+                count += 1;
+            }
+            if count == 0 {
+                return ControlFlow::Continue(());
+            }
+            self.add(count);
+        }
     }
 }
 
@@ -227,7 +292,7 @@ struct Careful<'a, I: Integrand> {
     offender: Option<Box<Offender>>,
 }
 
-impl<I: Integrand> Visit for Careful<'_, I> {
+impl<I: Integrand> Careful<'_, I> {
     fn point<S: Sampler>(&mut self, index: u64, u: S) -> ControlFlow<()> {
         self.coordinates.clear();
         let mut u = Recorder {
@@ -247,6 +312,25 @@ impl<I: Integrand> Visit for Careful<'_, I> {
         }
         self.open.push(value, self.coordinates.len() as u64);
         ControlFlow::Continue(())
+    }
+}
+
+impl<I: Integrand> Visit for Careful<'_, I> {
+    fn stream<S: Sampler>(&mut self, mut indices: Range<u64>, u: &mut S, begin: impl Fn(&mut S)) {
+        let _ = indices.try_for_each(|index| {
+            begin(u);
+            self.point(index, &mut *u)
+        });
+    }
+
+    fn points<S: Sampler>(
+        &mut self,
+        first: u64,
+        points: impl Iterator<Item = S>,
+    ) -> ControlFlow<()> {
+        (first..)
+            .zip(points)
+            .try_for_each(|(index, u)| self.point(index, u))
     }
 }
 

@@ -33,6 +33,14 @@ pub trait Sampler {
     fn next_2d(&mut self) -> [f64; 2] {
         [self.next_1d(), self.next_1d()]
     }
+
+    /// Writes the next coordinates, each in `[0, 1)`: as many as `out` holds, those of [`next_1d`](Self::next_1d).
+    #[inline]
+    fn next_nd(&mut self, out: &mut [f64]) {
+        for coordinate in out {
+            *coordinate = self.next_1d();
+        }
+    }
 }
 
 impl<S: Sampler + ?Sized> Sampler for &mut S {
@@ -44,6 +52,11 @@ impl<S: Sampler + ?Sized> Sampler for &mut S {
     #[inline]
     fn next_2d(&mut self) -> [f64; 2] {
         (**self).next_2d()
+    }
+
+    #[inline]
+    fn next_nd(&mut self, out: &mut [f64]) {
+        (**self).next_nd(out);
     }
 }
 
@@ -106,6 +119,25 @@ impl<P: PointSet + ?Sized> Sampler for Cursor<'_, P> {
         match self.ahead.next() {
             Some(&coordinate) => coordinate,
             None => self.beyond(),
+        }
+    }
+
+    #[inline]
+    fn next_2d(&mut self) -> [f64; 2] {
+        let mut pair = [0.0; 2];
+        self.next_nd(&mut pair);
+        pair
+    }
+
+    /// One look at how many coordinates are at hand, not one for each.
+    #[inline]
+    fn next_nd(&mut self, out: &mut [f64]) {
+        match self.ahead.as_slice().split_at_checked(out.len()) {
+            Some((here, ahead)) => {
+                out.copy_from_slice(here);
+                self.ahead = ahead.iter();
+            }
+            None => out.fill_with(|| self.next_1d()),
         }
     }
 }

@@ -163,18 +163,22 @@ impl<R> Streams<R> {
     }
 }
 
-impl<R: Rng + SeedableRng> Source for Streams<R> {
-    fn points(&self, indices: Range<u64>, drawn: u64, _: u32, visit: &mut impl Visit) {
-        let block = indices.start / BLOCK * BLOCK;
+impl<R: Rng + SeedableRng> Streams<R> {
+    /// The stream of the block of the point `index`, past the first `drawn` coordinates.
+    pub(super) fn stream(&self, index: u64, drawn: u64) -> Stream<R> {
+        let block = index / BLOCK * BLOCK;
         let mut stream = Stream(seeded::<R>(hash::hash(self.seed, block)));
         for _ in 0..drawn {
             stream.next_1d();
         }
-        for index in indices {
-            if visit.point(index, &mut stream).is_break() {
-                return;
-            }
-        }
+        stream
+    }
+}
+
+impl<R: Rng + SeedableRng> Source for Streams<R> {
+    fn points(&self, indices: Range<u64>, drawn: u64, _: u32, visit: &mut impl Visit) {
+        let mut stream = self.stream(indices.start, drawn);
+        visit.stream(indices, &mut stream, |_| ());
     }
 }
 

@@ -1,6 +1,6 @@
 //! Independent points in every cell of a grid, with the variance of each cell.
 
-use core::ops::{ControlFlow, Range};
+use core::ops::Range;
 use std::time::Instant;
 
 use rand::rngs::Xoshiro256PlusPlus;
@@ -214,55 +214,48 @@ struct Cell {
 }
 
 impl Source for Cell {
-    fn points(&self, indices: Range<u64>, drawn: u64, dimensions: u32, visit: &mut impl Visit) {
-        let mut inner = Within { cell: self, visit };
-        self.streams.points(indices, drawn, dimensions, &mut inner);
-    }
-}
-
-struct Within<'a, T> {
-    cell: &'a Cell,
-    visit: &'a mut T,
-}
-
-impl<T: Visit> Visit for Within<'_, T> {
-    #[inline]
-    fn point<S: Sampler>(&mut self, index: u64, u: S) -> ControlFlow<()> {
+    fn points(&self, indices: Range<u64>, drawn: u64, _: u32, visit: &mut impl Visit) {
         let Strata {
             cells, dimensions, ..
-        } = self.cell.grid;
-        self.visit.point(
-            index,
-            Confined {
-                inner: u,
-                cells,
-                left: dimensions,
-                index: self.cell.index,
-            },
-        )
+        } = self.grid;
+        let mut index = self.index;
+        let corner: Vec<f64> = (0..dimensions)
+            .map(|_| {
+                let place = index % cells;
+                index /= cells;
+                place as f64
+            })
+            .collect();
+        let mut u = Confined {
+            inner: self.streams.stream(indices.start, drawn),
+            cells: cells as f64,
+            corner: &corner,
+            left: &corner,
+        };
+        visit.stream(indices, &mut u, |u| u.left = u.corner);
     }
 }
 
-/// The first coordinates confined to a cell.
-struct Confined<S> {
+/// The first coordinates of each point confined to a cell.
+struct Confined<'a, S> {
     inner: S,
-    cells: u64,
-    left: u32,
-    /// The number of the cell in what axes are left.
-    index: u64,
+    /// How many cells there are along an axis.
+    cells: f64,
+    /// Which of them it is, axis by axis.
+    corner: &'a [f64],
+    /// The same for the axes that the point has not read.
+    left: &'a [f64],
 }
 
-impl<S: Sampler> Sampler for Confined<S> {
+impl<S: Sampler> Sampler for Confined<'_, S> {
     #[inline]
     fn next_1d(&mut self) -> f64 {
         const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
         let u = self.inner.next_1d();
-        if self.left == 0 {
+        let Some((place, left)) = self.left.split_first() else {
             return u;
-        }
-        self.left -= 1;
-        let place = self.index % self.cells;
-        self.index /= self.cells;
-        ((place as f64 + u) / self.cells as f64).min(ALMOST_ONE)
+        };
+        self.left = left;
+        ((place + u) / self.cells).min(ALMOST_ONE)
     }
 }

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use estimand::hash;
-use estimand::mitsuba::read;
+use estimand::mitsuba::{MeshFile, MeshFormat, read};
 
 use crate::files::Folder;
 
@@ -73,6 +73,75 @@ fn mutant(text: &str, seed: u64) -> String {
         characters.splice(from..to, piece);
     }
     characters.into_iter().collect()
+}
+
+/// A mesh with some of its bytes replaced, or cut off.
+fn mutant_mesh(bytes: &[u8], seed: u64) -> Vec<u8> {
+    let mut dice = Dice { seed, drawn: 0 };
+    let mut bytes = bytes.to_vec();
+    for _ in 0..=dice.below(8) {
+        let at = dice.below(bytes.len());
+        match dice.below(6) {
+            _ if bytes.len() < 2 => break,
+            0 => bytes.truncate(at.max(1)),
+            1 => drop(bytes.remove(at)),
+            2 => bytes.insert(at, b"0123456789-.eE \n/"[dice.below(17)]),
+            _ => bytes[at] = dice.below(256).to_le_bytes()[0],
+        }
+    }
+    bytes
+}
+
+#[test]
+fn mutated_meshes_do_not_panic() {
+    let folder = Folder::new();
+    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 1\nvn 0 0 1\n";
+    let obj = format!("{vertices}g a\nf 1/1/1 2//1 3\nf -1 -2 -3\n");
+    let ply = |format: &str| {
+        format!(
+            "ply\nformat {format} 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+             property float color_0\nelement face 1\nproperty list uchar int vertex_indices\nproperty float red\n\
+             end_header\n"
+        )
+    };
+    let ascii = format!("{}0 0 0 1\n1 0 0 1\n0 1 0 2\n3 0 1 2 7\n", ply("ascii"));
+    let mut binary = ply("binary_little_endian").into_bytes();
+    for value in [
+        0.0_f32, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 2.0,
+    ] {
+        binary.extend(value.to_le_bytes());
+    }
+    binary.push(3);
+    for index in 0_i32..3 {
+        binary.extend(index.to_le_bytes());
+    }
+    binary.extend(7.0_f32.to_le_bytes());
+    let (mut read_well, mut refused) = (0, 0);
+    for (bytes, format) in [
+        (obj.as_bytes(), MeshFormat::Obj),
+        (ascii.as_bytes(), MeshFormat::Ply),
+        (&binary, MeshFormat::Ply),
+    ] {
+        for seed in 0..5 * MUTANTS {
+            let mesh = MeshFile {
+                file: folder.write("mesh", mutant_mesh(bytes, seed)),
+                format,
+                face_normals: false,
+                flip_normals: false,
+                flip_tex_coords: true,
+            };
+            match mesh.load() {
+                Ok(mesh) => {
+                    let count = mesh.positions.len();
+                    let inside = |index: &u32| (*index as usize) < count;
+                    assert!(mesh.triangles.as_flattened().iter().all(inside));
+                    read_well += 1;
+                }
+                Err(_) => refused += 1,
+            }
+        }
+    }
+    assert!(read_well > 10 && refused > 100, "{read_well} {refused}");
 }
 
 #[test]

@@ -61,13 +61,17 @@ pub(super) struct Adaptation<V> {
     pub(super) scale: V,
 }
 
-/// What one iteration has given.
+/// What one iteration has given so far.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Pass<V> {
     pub(super) strata: Vec<Stratum<V>>,
     /// Sums of squares in each bin of each axis.
-    pub(super) squares: Vec<Vec<f64>>,
-    pub(super) hits: Vec<Vec<f64>>,
-    pub(super) largest: V,
+    squares: Vec<Vec<f64>>,
+    hits: Vec<Vec<f64>>,
+    largest: V,
+    /// How many parts of the iteration are in it.
+    parts: u64,
 }
 
 /// A part of an iteration: the points `range`, counted through all strata.
@@ -94,33 +98,68 @@ impl<V: Value> Adaptation<V> {
         self.counts.iter().sum()
     }
 
-    pub(super) fn pass<I: Integrand>(&mut self, integrand: &I, seed: u64) -> Result<Pass<V>, Error>
+    /// An iteration with no points yet. Its seed must stay the same until it is complete.
+    pub(super) fn begin<I: Integrand>(&mut self, integrand: &I, seed: u64) -> Pass<V>
     where
         I::Value: Value<Wide = V>,
     {
-        /// Parts of an iteration at most: each keeps its own sums for every bin.
-        const PARTS: u64 = 64;
+        if self.largest_is_zero() {
+            self.look(integrand, seed);
+        }
+        self.empty(self.counts.len())
+    }
+
+    /// The index of the first point of a part of the iteration.
+    fn first_of(&self, part: u64) -> u64 {
+        let (total, parts) = (self.points(), self.parts());
+        // Products that would not fit into a word do not fit into a day either.
+        total / parts * part + (total % parts).min(part)
+    }
+
+    /// The parts that an iteration is evaluated in, each with its own sums for every bin.
+    fn parts(&self) -> u64 {
+        const MOST: u64 = 64;
         const SHORTEST: u64 = 4096;
+        self.points().div_ceil(SHORTEST).clamp(1, MOST)
+    }
+
+    /// How many points of the iteration were evaluated.
+    pub(super) fn used(&self, pass: &Pass<V>) -> u64 {
+        self.first_of(pass.parts)
+    }
+
+    /// Goes on with an iteration until `count` of its points, or a few more, are evaluated, or all.
+    pub(super) fn go_on<I: Integrand>(
+        &self,
+        pass: &mut Pass<V>,
+        integrand: &I,
+        seed: u64,
+        count: u64,
+    ) -> Result<(), Error>
+    where
+        I::Value: Value<Wide = V>,
+    {
         let mut ends = Vec::with_capacity(self.counts.len());
         let mut total = 0;
         for count in &self.counts {
             total += count;
             ends.push(total);
         }
-        if self.largest_is_zero() {
-            self.look(integrand, seed);
-        }
-        let parts = total.div_ceil(SHORTEST).clamp(1, PARTS);
-        let mut pass = self.empty(self.counts.len());
+        let begun = pass.parts;
+        let end = (begun..self.parts())
+            .find(|&part| self.first_of(part) >= count)
+            .unwrap_or(self.parts());
         reduce::in_order(
-            parts,
-            |part| {
-                // Products that would not fit into a word do not fit into a day either.
-                let range = total / parts * part + (total % parts).min(part)
-                    ..total / parts * (part + 1) + (total % parts).min(part + 1);
+            end - begun,
+            |job| {
+                let part = begun + job;
+                let range = self.first_of(part)..self.first_of(part + 1);
                 self.part(integrand, hash::hash(seed, part), &ends, range)
             },
             |part: Part<V>| {
+                if let Some(offender) = part.offender {
+                    return Err(offender);
+                }
                 for (here, there) in pass.strata[part.first..].iter_mut().zip(&part.pass.strata) {
                     here.merge(there);
                 }
@@ -133,10 +172,10 @@ impl<V: Value> Adaptation<V> {
                     }
                 }
                 pass.largest = pass.largest.zip(part.pass.largest, f64::max);
-                part.offender.map_or(Ok(()), Err)
+                pass.parts += 1;
+                Ok(())
             },
-        )?;
-        Ok(pass)
+        )
     }
 
     fn largest_is_zero(&self) -> bool {
@@ -166,6 +205,7 @@ impl<V: Value> Adaptation<V> {
             squares: bins.clone(),
             hits: bins,
             largest: V::ZERO,
+            parts: 0,
         }
     }
 

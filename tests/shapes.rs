@@ -516,3 +516,46 @@ fn a_picture_shines_where_it_is_bright() {
     let negative = Bitmap::new(1, 1, vec![-1.0]).unwrap();
     assert!(floor().emitting_picture(negative.into()).is_err());
 }
+
+#[test]
+fn hidden_lights_light_but_are_not_seen() {
+    let floor = Flat::parallelogram([-2.0, 0.0, -2.0], [0.0, 0.0, 4.0], [4.0, 0.0, 0.0]).unwrap();
+    let lamp = Sphere::new([0.0, 1.0, 0.0], 0.3).unwrap();
+    let black = Lambertian::new([0.0; 3]).unwrap();
+    let render = |paths, from, to| {
+        let view = View::<Lambertian, AreaLights, _, _> {
+            scene: Scene::new(
+                vec![
+                    Object::new([floor], white()),
+                    Object::new([lamp], black).emitting([5.0; 3]).unwrap(),
+                ],
+                Constant::new([0.25; 3]).unwrap(),
+            )
+            .unwrap(),
+            sensor: Pinhole::look_at(from, to, [0.0, 1.0, 0.0], 0.1, 1.0).unwrap(),
+            filter: BoxFilter,
+            paths,
+        };
+        view.render([1, 1], 1, |seed| {
+            Average::new(
+                Sobol::new(16).unwrap().scrambled(HashedOwen { seed }),
+                1 << 12,
+            )
+        })
+        .unwrap()
+        .mean()
+        .x
+    };
+    let (all, hiding) = (Paths::default(), Paths::default().hiding_lights());
+    // Through the lamp at the floor: what is seen from below the lamp.
+    let (above, below, target) = ([0.0, 2.0, 0.1], [0.0, 0.6, 0.03], [0.0; 3]);
+    assert_eq!(render(all, above, target), 5.0);
+    let (through, beyond) = (render(hiding, above, target), render(all, below, target));
+    assert!((through / beyond - 1.0).abs() < 1e-3, "{through} {beyond}");
+    assert!(through > 0.1);
+    // Through the lamp, or past it, at the sky.
+    for target in [[0.0, 1.1, 0.0], [0.0, 1.9, 0.0]] {
+        assert_eq!(render(hiding, [0.0, 1.0, 2.0], target), 0.0);
+    }
+    assert_eq!(render(all, [0.0, 1.0, 2.0], [0.0, 1.9, 0.0]), 0.25);
+}

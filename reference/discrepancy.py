@@ -7,7 +7,8 @@
 `values` prints small sets of points, whose coordinates are whole multiples of 1/1024, with their squared L2
 discrepancies: in exact rational arithmetic from the definitions as double sums, and by scipy where it has them.
 `tables` builds the crate's program, runs its benches, and writes all tables of benches/DISCREPANCY.md anew; with
-names of tables after it, those alone: machine, speed, large, point_sets, growth.
+names of tables after it, those alone: machine, speed, large, point_sets, star, l2, division. Each takes minutes at most,
+on a machine that does nothing else.
 """
 
 import glob
@@ -197,19 +198,22 @@ def point_sets():
             yield f"| {name} | {dimensions} | {shown} | n^{slope(times):.2f} | {power} |"
 
 
-def growth():
-    """The least times that criterion has kept: a table."""
+def growth(prefix, infix):
+    """Runs the benches whose group has such a name, and fits the least times that criterion keeps: a table."""
+    bench = ["cargo", "bench", "--all-features", "--bench", "discrepancy", "--"]
+    subprocess.run([*bench, f"^{prefix}.*{infix}"], cwd=ROOT, check=True)
     root = os.path.join(ROOT, "target", "criterion")
     groups = {}
     for path in glob.glob(os.path.join(root, "*", "*", "new", "benchmark.json")):
         with open(path) as file:
             benchmark = json.load(file)
-        if not benchmark["group_id"].startswith(("Star::", "L2::")):
+        group = benchmark["group_id"]
+        if not (group.startswith(prefix) and infix in group):
             continue
         with open(path.replace("benchmark.json", "sample.json")) as file:
             sample = json.load(file)
         least = min(t / i for t, i in zip(sample["times"], sample["iters"])) / 1e6
-        groups.setdefault(benchmark["group_id"], []).append((int(benchmark["value_str"]), least))
+        groups.setdefault(group, []).append((int(benchmark["value_str"]), least))
     yield "| | n: ms | growth |"
     yield "|---|---|---|"
     for name, times in sorted(groups.items()):
@@ -218,34 +222,43 @@ def growth():
         yield f"| {name} | {shown} | n^{slope(times):.2f} |"
 
 
+def star():
+    return growth("Star::exact", "")
+
+
+def l2():
+    return growth("L2::", "d = 8")
+
+
+def division():
+    return growth("L2::Star", "by division")
+
+
 def machine():
     """Where and with what the tables were measured."""
     with open("/proc/cpuinfo") as file:
         model = next(line.split(":")[1].strip() for line in file if line.startswith("model name"))
     load = os.getloadavg()[0]
-    yield f"{os.cpu_count()} cores of {model}; {load:.1f} jobs running when it began; scipy {scipy.__version__}."
+    yield f"{os.cpu_count()} cores of {model}; a load of {load:.1f} in the minute before; scipy {scipy.__version__}."
 
 
-TABLES = {f.__name__: f for f in (machine, speed, large, point_sets, growth)}
+TABLES = {f.__name__: f for f in (machine, speed, large, point_sets, star, l2, division)}
 
 
 def tables(names):
     """Measures, and writes what it finds into the file of the tables."""
     features = ["--release", "--all-features", "--example", "discrepancy"]
     subprocess.run(["cargo", "build", *features], cwd=ROOT, check=True)
-    if "growth" in names:
-        bench = ["cargo", "bench", "--all-features", "--bench", "discrepancy"]
-        subprocess.run(bench, cwd=ROOT, check=True)
     path = os.path.join(ROOT, "benches", "DISCREPANCY.md")
     for name in names:
         measured = "\n".join(TABLES[name]())
         with open(path) as file:
             text = file.read()
-        begin, end = f"<!-- begin {name} -->\n", f"\n<!-- end {name} -->"
+        begin, end = f"<!-- begin {name} -->\n", f"<!-- end {name} -->"
         before, rest = text.split(begin)
         _, after = rest.split(end)
         with open(path, "w") as file:
-            file.write(before + begin + measured + end + after)
+            file.write(before + begin + measured + "\n" + end + after)
         print(measured, flush=True)
 
 

@@ -80,7 +80,7 @@
 //!   dimensions belongs to deterministic cubature, which is orders of magnitude more exact.
 //! - Coordinates have a resolution of 2^-53, but near 0 in some sets: a peak narrower than that is seen by no point.
 //! - An estimate is only as good as its finite variance: where the square of the integrand has no integral,
-//!   error bars are too small, whatever their kind.
+//!   error bars are too small, whatever their kind. [`estimators`] has tables of how often they hold.
 //! - The integrand must be pure; a closure that counts its calls may see some points twice.
 //!
 //! # Features

@@ -27,8 +27,11 @@
 //! |---|---|
 //! | [`View`] | scene, camera and paths: what a picture is taken of |
 //! | [`Scene`], [`Object`] | shapes, and what they do to light |
+//! | [`texture`] | what varies over a surface |
 //! | [`shape`], [`bsdf`], [`light`], [`sensor`], [`filter`] | one kind of shape, scattering, source, camera and filter a file |
 //! | [`Paths::radiance`] | the rendering equation |
+//! | [`Recursive`] | the same as it is taught, to be compared with |
+//! | [`Adaptive`] | more samples where the picture needs them |
 //! | [`Image`] | pictures, their errors, their files |
 //! | [`scenes`] | the Cornell box and others, as `reference/scenes` has them for Mitsuba |
 //!
@@ -37,9 +40,12 @@
 //! - Geometry is in `f32`: coordinates are known to 6e-8 of themselves. Rays leave surfaces by a bound of the rounding
 //!   errors, which scales and moves with the scene; two surfaces nearer to one another than about 1e-6 of
 //!   their coordinates are not told apart. A scene may be of any size between 1e-10 and 1e10.
-//! - Colour is linear red, green and blue. No media, no textures, no spectra.
-//! - Boxes around many shapes come from the crate `obvhs`; up to 48 shapes are swept over instead.
+//! - Colour is linear red, green and blue. No media, no spectra.
+//! - Boxes around many shapes come from the crate `obvhs`; up to 48 shapes are swept over instead. If they are flat and
+//!   scatter light ideally diffusely, and what is around them is constant, many paths are followed at once, with the same
+//!   result to the bit.
 
+mod adaptive;
 pub mod bsdf;
 mod color;
 pub mod filter;
@@ -47,20 +53,29 @@ mod frame;
 mod geometry;
 pub mod image;
 pub mod light;
+#[cfg(feature = "simd")]
+mod packet;
 mod pictures;
+mod place;
 mod radiance;
 mod ray;
+mod recursive;
 mod render;
 mod scene;
 pub mod scenes;
 pub mod sensor;
 mod shading;
 pub mod shape;
+pub mod texture;
 
+pub use adaptive::{Adapted, Adaptive};
+pub use frame::Frame;
 pub use image::Image;
 pub use pictures::Pictures;
+pub use place::{Place, Spot};
 pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
+pub use recursive::{Direct, Ending, Recursive, RecursivePixel};
 pub use render::{Pixel, Unfinished, View};
-pub use scene::{Object, Scene, Segment, Vertex};
+pub use scene::{Instances, Object, Scene, Segment, Vertex};
 pub use shading::{Detail, Shading};

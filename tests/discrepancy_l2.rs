@@ -5,7 +5,7 @@ use core::f64::consts::{PI, TAU};
 use estimand::discrepancy::{
     L2, Periodogram, Points, UpdatableL2, minimum_distance, t_value, toroidal_minimum_distance,
 };
-use estimand::points::{Hammersley, Independent, PointSet, Sobol};
+use estimand::points::{Faure, Hammersley, Independent, PointSet, Sobol};
 use proptest::prelude::*;
 use serde_json::Value;
 
@@ -98,7 +98,7 @@ fn values_agree_with_published_designs() {
     assert!((wrap_around - 1.368011239668195).abs() < 1e-14);
     assert!((centred - 0.317168018199526).abs() < 1e-14);
     assert!((star.sqrt() - 0.037450517408051).abs() < 1e-14);
-    // Pillards, Vandewoestyne, Cools (2006), https://doi.org/10.1016/j.cam.2005.11.005: the point (1, ..., 1) has 3^(-d/2).
+    // The point (1, ..., 1) is in no box [0, y): what is left is the integral of the squared volume, 3^-d.
     for dimensions in [2, 4, 8, 16, 32, 64] {
         let rows = vec![1.0; dimensions];
         let root = L2::Star.root(&Points::from_rows(&rows, dimensions).unwrap());
@@ -130,7 +130,7 @@ fn l2_star_discrepancy_of_halton() {
 #[test]
 fn l2_star_discrepancy_of_hammersley() {
     // Halton and Zaremba (1969), "The extreme and L2 discrepancies of some plane sets",
-    // https://doi.org/10.1007/BF01304630: with N = 2^m points,
+    // Monatshefte für Mathematik: with N = 2^m points,
     // (N D)^2 = m^2 / 64 + 29 m / 192 + 3 / 8 - m / (16 2^m) + 1 / (4 2^m) - 1 / (72 4^m).
     for m in 0..=18 {
         let n = 2.0_f64.powi(m);
@@ -234,24 +234,66 @@ fn nets_have_their_t() {
 }
 
 /// The least t by the definition: every elementary interval is gone through.
-fn exhaustive_t(rows: &[f64], m: u32) -> u32 {
-    let even = |k: u32, l: u32| {
-        (0..1_u32 << k).all(|a| {
-            (0..1_u32 << l).all(|b| {
-                let holds = |x: f64, a: u32, k: u32| {
-                    let scale = f64::from(1_u32 << k);
-                    f64::from(a) / scale <= x && x < f64::from(a + 1) / scale
-                };
-                let inside = rows
-                    .chunks_exact(2)
-                    .filter(|row| holds(row[0], a, k) && holds(row[1], b, l));
-                inside.count() == 1 << (m - k - l)
-            })
+fn exhaustive_t(rows: &[f64], dimensions: usize, base: u32, m: u32) -> u32 {
+    let even = |digits: &[u32]| {
+        let cells: Vec<u32> = digits.iter().map(|&k| base.pow(k)).collect();
+        let intervals: u32 = cells.iter().product();
+        (0..intervals).all(|mut number| {
+            let place: Vec<u32> = cells
+                .iter()
+                .map(|cells| {
+                    let here = number % cells;
+                    number /= cells;
+                    here
+                })
+                .collect();
+            let inside = rows.chunks_exact(dimensions).filter(|row| {
+                (row.iter().zip(&place).zip(&cells)).all(|((&x, &a), &cells)| {
+                    let end = |a: u32| f64::from(a) / f64::from(cells);
+                    end(a) <= x && x < end(a + 1)
+                })
+            });
+            inside.count() == base.pow(m) as usize / intervals as usize
+        })
+    };
+    let all_even = |digits: u32| {
+        // All ways to share the digits: the numbers below (digits + 1)^d with so large a sum of digits.
+        let radix = digits + 1;
+        (0..radix.pow(u32::try_from(dimensions).unwrap())).all(|mut code| {
+            let share: Vec<u32> = (0..dimensions)
+                .map(|_| {
+                    let here = code % radix;
+                    code /= radix;
+                    here
+                })
+                .collect();
+            share.iter().sum::<u32>() != digits || even(&share)
         })
     };
     (0..=m)
-        .find(|t| (0..=m - t).all(|k| even(k, m - t - k)))
+        .find(|t| all_even(m - t))
         .expect("t = m holds always")
+}
+
+#[test]
+fn nets_in_more_dimensions_have_their_t() {
+    // Faure (1982), "Discrépance de suites associées à un système de numération (en dimension s)": t = 0 in a prime base
+    // of at least the dimension.
+    for (dimensions, base, m) in [(3, 3, 5), (4, 5, 3), (5, 5, 4), (7, 7, 3)] {
+        let count = u64::from(base).pow(m);
+        let faure = Faure::new(dimensions).unwrap();
+        let points = Points::from_set(&faure, 0..count, dimensions).unwrap();
+        assert_eq!(t_value(&points, base).unwrap(), 0, "{dimensions} {base}");
+    }
+    // And what is no net of quality 0, by the definition. In base 2 all is exact.
+    for (dimensions, m) in [(3, 5), (3, 7), (4, 6), (5, 5)] {
+        let sobol = Sobol::new(dimensions).unwrap();
+        let points = Points::from_set(&sobol, 0..1 << m, dimensions).unwrap();
+        let rows: Vec<f64> = points.rows().flatten().copied().collect();
+        let expected = exhaustive_t(&rows, dimensions as usize, 2, m);
+        assert!(expected > 0);
+        assert_eq!(t_value(&points, 2).unwrap(), expected, "{dimensions} {m}");
+    }
 }
 
 fn pairs(count: usize) -> impl Strategy<Value = Vec<f64>> {
@@ -275,7 +317,7 @@ proptest! {
             rows[at] = Independent::new(seed).coordinate(k as u64, 0);
         }
         let points = Points::from_rows(&rows, 2).unwrap();
-        prop_assert_eq!(t_value(&points, 2).unwrap(), exhaustive_t(&rows, m));
+        prop_assert_eq!(t_value(&points, 2).unwrap(), exhaustive_t(&rows, 2, 2, m));
     }
 
     #[test]

@@ -9,6 +9,8 @@ mod coordinates;
 mod pictures;
 #[path = "furnace/places.rs"]
 mod places;
+#[path = "furnace/recursion.rs"]
+mod recursion;
 #[path = "furnace/sets.rs"]
 mod sets;
 

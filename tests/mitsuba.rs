@@ -4,6 +4,8 @@
 
 #[path = "mitsuba/files.rs"]
 mod files;
+#[path = "mitsuba/loaded.rs"]
+mod loaded;
 #[path = "mitsuba/meshes.rs"]
 mod meshes;
 #[path = "mitsuba/mutated.rs"]

@@ -13,7 +13,7 @@ use estimand::path::bsdf::{Bsdf, Lambertian};
 use estimand::path::light::{AreaLights, Environment, Light, NoEnvironment};
 use estimand::path::scenes::{self, CORNELL_LIGHT};
 use estimand::path::sensor::{Pinhole, Sensor};
-use estimand::path::{Image, View};
+use estimand::path::{Adaptive, Direct, Ending, Image, Recursive, View};
 use estimand::points::{Halton, Hammersley, HashedOwen, NRooks, Owen, Sobol, Stratified};
 use estimand::{Average, Estimator, MonteCarlo};
 
@@ -120,6 +120,38 @@ fn bodies_under_a_sky() {
     });
     reference("environment", 128, 32768)
         .compare(&ours, "monte-carlo")
+        .check();
+}
+
+/// Two rays at every surface.
+#[test]
+fn recursion() {
+    let view = scenes::cornell_box();
+    let tree = Recursive::new(2, Ending::Roulette(3), Direct::NextEvent).unwrap();
+    let ours = Batches::new(32, 6, |batch| {
+        Image::of_pixels([128; 2], hash(13, batch), |position, key| {
+            let pixel = tree.pixel(view.pixel(position, [128; 2]));
+            MonteCarlo::new(6, key).estimate(&pixel)
+        })
+        .unwrap()
+    });
+    reference("cornell_box", 128, 4 * 32768)
+        .compare(&ours, "recursion")
+        .check();
+}
+
+/// The samples that decide how many more there are have no say in their own number. Few of them, so that a bias would be
+/// large.
+#[test]
+fn adaptive_samples() {
+    let view = scenes::cornell_box();
+    let adaptive = Adaptive::new(12, 4).unwrap();
+    let ours = Batches::new(32, 12, |batch| {
+        let adapted = view.render_adaptive([128; 2], hash(14, batch), adaptive);
+        adapted.unwrap().image
+    });
+    reference("cornell_box", 128, 4 * 32768)
+        .compare(&ours, "adaptive")
         .check();
 }
 

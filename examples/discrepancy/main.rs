@@ -3,6 +3,7 @@
 #[path = "../common/marks.rs"]
 mod marks;
 mod measure;
+mod read;
 #[path = "../common/sets.rs"]
 mod sets;
 mod sweep;
@@ -24,12 +25,13 @@ use measure::{Kind, Measure, Metric};
 ///
 /// With `--sweep` it measures several sets at many counts, and draws the curves.
 #[derive(Parser)]
+#[command(override_usage = "discrepancy [OPTIONS] <SET|--file POINTS.csv|--sweep>")]
 struct Arguments {
     /// The set
     #[arg(value_enum, required_unless_present_any = ["file", "sweep"])]
     set: Option<sets::Set>,
-    /// A file of points instead: comma-separated values, one point a line; `-` for the standard input
-    #[arg(long, value_name = "POINTS.csv", conflicts_with_all = ["set", "sweep"])]
+    /// A file of points instead: numbers between commas or blanks, one point a line; `-` for the standard input
+    #[arg(long, value_name = "POINTS.csv", conflicts_with_all = ["set", "sweep", "first", "scramble"])]
     file: Option<PathBuf>,
     /// In how many dimensions [default: 2, or all of a file]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
@@ -49,7 +51,12 @@ struct Arguments {
     #[arg(long)]
     squared: bool,
     /// Weights of the dimensions in an L2 discrepancy
-    #[arg(long, value_delimiter = ',', value_name = "WEIGHTS")]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "WEIGHTS",
+        allow_hyphen_values = true
+    )]
     weights: Option<Vec<f64>>,
     /// The base of a net
     #[arg(long, default_value_t = 2)]
@@ -58,16 +65,22 @@ struct Arguments {
     #[arg(long, value_enum)]
     kind: Option<Kind>,
     /// How far bounds may be apart
-    #[arg(long, default_value_t = 0.01)]
+    #[arg(long, default_value_t = 0.01, allow_negative_numbers = true)]
     gap: f64,
-    /// Seconds that the star discrepancy may take, about; counted in steps, so that the answer is the same everywhere
-    #[arg(long, default_value_t = 10.0, value_name = "SECONDS")]
+    /// Seconds that the star discrepancy may take, about; counted in steps, 2e8 a second, so that the answer is the
+    /// same everywhere
+    #[arg(
+        long,
+        default_value_t = 10.0,
+        value_name = "SECONDS",
+        allow_negative_numbers = true
+    )]
     budget: f64,
     /// Writes the answer as JSON; `-` for the standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Draws the discrepancy of several sets against the count, as PNG and SVG
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["set", "count"])]
     sweep: bool,
     /// The sets of the sweep
     #[arg(long, value_enum, value_delimiter = ',', value_name = "SETS", requires = "sweep",
@@ -129,20 +142,17 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             choice: arguments.choice,
         };
         let curves = sweep.run()?;
+        // The numbers first: they are worth having even if there is nothing to draw.
+        match &arguments.json {
+            Some(path) => write_json(path, &sweep.json(&curves))?,
+            None => write!(std::io::stdout().lock(), "{}", sweep.table(&curves))?,
+        }
         std::fs::create_dir_all(&arguments.out)
             .map_err(|error| format!("{}: {error}", arguments.out.display()))?;
-        let files = sweep.draw(&curves, &arguments.out)?;
-        return match &arguments.json {
-            Some(path) => write_json(path, &sweep.json(&curves)),
-            None => {
-                let mut out = std::io::stdout().lock();
-                write!(out, "{}", sweep.table(&curves))?;
-                for file in files {
-                    writeln!(out, "{}", file.display())?;
-                }
-                Ok(())
-            }
-        };
+        for file in sweep.draw(&curves, &arguments.out)? {
+            eprintln!("{}", file.display());
+        }
+        return Ok(());
     }
     let points = points(arguments)?;
     let spinner = std::io::stderr().is_terminal().then(|| {
@@ -172,10 +182,10 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             let squared = if arguments.squared { ", squared" } else { "" };
             writeln!(
                 out,
-                "{}{squared}, of {} points in {} dimensions, {}: {} ({seconds:.3} s)",
+                "{}{squared}, of {} in {}, {}: {} ({seconds:.3} s)",
                 arguments.metric.name(),
-                points.count(),
-                points.dimensions(),
+                measure::counted(points.count(), "point"),
+                measure::counted(points.dimensions(), "dimension"),
                 answer.kind(),
                 answer.text()
             )?;
@@ -197,7 +207,7 @@ fn write_json(path: &Path, value: &Value) -> Result<(), Box<dyn Error>> {
 /// The points that the arguments name.
 fn points(arguments: &Arguments) -> Result<Points<'static>, Box<dyn Error>> {
     if let Some(path) = &arguments.file {
-        return read(path, arguments.dims, arguments.count);
+        return read::points(path, arguments.dims, arguments.count);
     }
     let set = arguments.set.ok_or("which set?")?;
     let dimensions = arguments.dims.unwrap_or(2);
@@ -216,72 +226,4 @@ fn points(arguments: &Arguments) -> Result<Points<'static>, Box<dyn Error>> {
         arguments.first..end,
         dimensions,
     )?)
-}
-
-/// Reads points: numbers between commas or blanks. Lines that are blank, begin with `#`, or are a heading before the first
-/// number, are passed over.
-fn read(
-    path: &Path,
-    dimensions: Option<u32>,
-    count: Option<u64>,
-) -> Result<Points<'static>, Box<dyn Error>> {
-    let text = if path == Path::new("-") {
-        std::io::read_to_string(std::io::stdin())
-    } else {
-        std::fs::read_to_string(path)
-    }
-    .map_err(|error| format!("{}: {error}", path.display()))?;
-    let mut rows: Vec<Vec<f64>> = Vec::new();
-    for (number, line) in (1..).zip(text.lines()) {
-        let line = line.trim();
-        if line.is_empty() || line.starts_with('#') {
-            continue;
-        }
-        let row: Result<Vec<f64>, _> = line
-            .split(|c: char| c == ',' || c == ';' || c.is_whitespace())
-            .filter(|field| !field.is_empty())
-            .map(|field| {
-                field
-                    .parse()
-                    .map_err(|_| format!("{}:{number}: no number: {field:?}", path.display()))
-            })
-            .collect();
-        match row {
-            Ok(mut row) => {
-                if let Some(dimensions) = dimensions {
-                    let dimensions = dimensions as usize;
-                    if row.len() < dimensions {
-                        return Err(format!(
-                            "{}:{number}: {} coordinates, not {dimensions}",
-                            path.display(),
-                            row.len()
-                        )
-                        .into());
-                    }
-                    row.truncate(dimensions);
-                }
-                let place = || format!("{}:{number}", path.display());
-                if let Some(first) = rows.first().filter(|first| first.len() != row.len()) {
-                    let (first, here) = (first.len(), row.len());
-                    return Err(format!("{}: {here} coordinates, not {first}", place()).into());
-                }
-                if let Some(outside) = row.iter().find(|x| !(0.0..=1.0).contains(*x)) {
-                    return Err(format!("{}: {outside} is not in [0, 1]", place()).into());
-                }
-                rows.push(row);
-            }
-            Err(_) if rows.is_empty() && number == 1 => {}
-            Err(error) => return Err(error.into()),
-        }
-        if count.is_some_and(|count| rows.len() as u64 == count) {
-            break;
-        }
-    }
-    if let Some(count) = count.filter(|&count| count > rows.len() as u64) {
-        return Err(format!("{}: {} points, not {count}", path.display(), rows.len()).into());
-    }
-    if rows.is_empty() {
-        return Err(format!("{}: no points", path.display()).into());
-    }
-    Ok(Points::from_slices(&rows)?)
 }

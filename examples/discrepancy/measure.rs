@@ -4,7 +4,8 @@ use std::error::Error;
 
 use clap::ValueEnum;
 use estimand::discrepancy::{
-    L2, Points, Star, StarDiscrepancy, minimum_distance, t_value, toroidal_minimum_distance,
+    Boundary, L2, Points, Star, StarDiscrepancy, minimum_distance, t_value,
+    toroidal_minimum_distance,
 };
 use serde_json::{Map, Value, json};
 
@@ -80,12 +81,26 @@ pub(crate) struct Measure {
     pub(crate) seed: u64,
 }
 
-/// Steps that a core takes in a second, about.
-const STEPS_PER_SECOND: f64 = 5e8;
+/// Steps that a core takes in a second, at least about.
+const STEPS_PER_SECOND: f64 = 2e8;
+
+/// So many things.
+pub(crate) fn counted(count: usize, thing: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {thing}{plural}")
+}
+
+fn boundary(boundary: Boundary) -> &'static str {
+    match boundary {
+        Boundary::Open => "open",
+        Boundary::Closed => "closed",
+    }
+}
 
 /// A measured value.
 pub(crate) struct Answer {
     pub(crate) squared: bool,
+    pub(crate) weights: Option<Vec<f64>>,
     pub(crate) found: Found,
 }
 
@@ -122,6 +137,7 @@ impl Measure {
         };
         Ok(Answer {
             squared: self.squared,
+            weights: self.weights.clone(),
             found,
         })
     }
@@ -175,14 +191,16 @@ impl Answer {
             }
         }
         object.insert("squared".into(), json!(self.squared));
+        if let Some(weights) = &self.weights {
+            object.insert("weights".into(), json!(weights));
+        }
         if let Found::Star(star) = &self.found {
             let attained = star.attained();
-            let boundary = format!("{:?}", attained.boundary).to_lowercase();
             object.insert(
                 "box".into(),
                 json!({
                     "corner": attained.corner,
-                    "boundary": boundary,
+                    "boundary": boundary(attained.boundary),
                     "volume": attained.volume(),
                     "inside": attained.inside,
                 }),
@@ -198,10 +216,10 @@ impl Answer {
             Found::Star(star) => {
                 let attained = star.attained();
                 let shown = format!(
-                    "the {:?} box to {:?} holds {} points in a volume of {}",
-                    attained.boundary,
+                    "the {} box to {:?} holds {} in a volume of {}",
+                    boundary(attained.boundary),
                     attained.corner,
-                    attained.inside,
+                    counted(attained.inside, "point"),
                     attained.volume()
                 );
                 match star {

@@ -57,9 +57,12 @@ struct Sample {
 }
 
 impl Curve {
-    /// The slope of the logarithms, by least squares, over the upper half of the counts.
-    fn slope(&self) -> f64 {
-        let upper = &self.samples[self.samples.len() / 2..];
+    /// The slope of the logarithms, by least squares, over the upper half of the counts and at least two.
+    ///
+    /// `None` with a single count, and for values of 0.
+    fn slope(&self) -> Option<f64> {
+        let count = self.samples.len();
+        let upper = &self.samples[(count / 2).min(count.saturating_sub(2))..];
         let logs: Vec<(f64, f64)> = upper
             .iter()
             .map(|sample| ((sample.count as f64).ln(), sample.value.ln()))
@@ -70,7 +73,16 @@ impl Curve {
         });
         let covariance: f64 = logs.iter().map(|log| (log.0 - x) * (log.1 - y)).sum();
         let variance: f64 = logs.iter().map(|log| (log.0 - x).powi(2)).sum();
-        covariance / variance
+        let slope = covariance / variance;
+        slope.is_finite().then_some(slope)
+    }
+
+    /// The name of the set, with the slope if there is one.
+    fn label(&self) -> String {
+        match self.slope() {
+            Some(slope) => format!("{}, slope {slope:.2}", self.set),
+            None => self.set.to_string(),
+        }
     }
 }
 
@@ -182,9 +194,27 @@ impl Sweep<'_> {
         }
         let _ = write!(text, "\n{:>8}", "slope");
         for curve in curves {
-            let _ = write!(text, "{:>16.2} ", curve.slope());
+            let slope = curve
+                .slope()
+                .map_or("-".to_owned(), |slope| format!("{slope:.2}"));
+            let _ = write!(text, "{slope:>16} ");
         }
         text.push('\n');
+        let samples = || curves.iter().flat_map(|curve| &curve.samples);
+        if samples().any(|sample| sample.kind != "exact") {
+            text.push_str("* a lower bound\n");
+        }
+        for curve in curves {
+            for (sample, count) in curve.samples.iter().zip(self.counts) {
+                if sample.count != *count {
+                    let _ = writeln!(
+                        text,
+                        "{} has {} points for {count}",
+                        curve.set, sample.count
+                    );
+                }
+            }
+        }
         text
     }
 
@@ -242,14 +272,15 @@ impl Sweep<'_> {
         }
         let values = values.start / 1.5..values.end * 1.5;
         area.fill(&WHITE)?;
-        let replicates = format!(
-            "{} in {} dimensions; random sets: mean of {}",
-            self.name(),
-            self.dimensions,
-            self.replicates
-        );
+        let mut caption = format!("{} in {} dimensions", self.name(), self.dimensions);
+        if samples().any(|sample| sample.replicates > 1) {
+            caption += &format!("; random sets: mean of {}", self.replicates);
+        }
+        if samples().any(|sample| sample.kind != "exact") {
+            caption += "; lower bounds among them";
+        }
         let mut chart = ChartBuilder::on(area)
-            .caption(replicates, ("sans-serif", 26))
+            .caption(caption, ("sans-serif", 26))
             .margin(16)
             .x_label_area_size(56)
             .y_label_area_size(92)
@@ -274,7 +305,7 @@ impl Sweep<'_> {
                 .collect();
             chart
                 .draw_series(LineSeries::new(line.clone(), color.stroke_width(2)))?
-                .label(format!("{}, slope {:.2}", curve.set, curve.slope()))
+                .label(curve.label())
                 .legend(move |(x, y)| Mark {
                     at: (x + 10, y),
                     marker,

@@ -95,7 +95,7 @@ pub enum L2 {
     /// ```
     ///
     /// [^wrap]: Hickernell, Fred (1998). *Lattice Rules: How Well Do They Measure Up?*
-    ///     <https://doi.org/10.1007/978-1-4612-1702-2_3>
+    ///     In *Random and Quasi-Random Point Sets*, Springer, 109-166.
     WrapAround,
     /// A mixture of the centred and the wrap-around one that has the faults of neither.[^zhou]
     ///
@@ -232,7 +232,7 @@ impl L2 {
     /// [`Error::Refused`] for another number of weights than dimensions, and a weight that is negative, infinite or NaN.
     ///
     /// [^sloan]: Sloan, Ian; Woźniakowski, Henryk (1998). *When Are Quasi-Monte Carlo Algorithms Efficient for High
-    ///     Dimensional Integrals?* <https://doi.org/10.1006/jcom.1997.0463>
+    ///     Dimensional Integrals?* Journal of Complexity 14.
     pub fn squared_weighted(self, points: &Points<'_>, weights: &[f64]) -> Result<f64, Error> {
         if weights.len() != points.dimensions() {
             return Err(Error::refused(

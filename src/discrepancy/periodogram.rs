@@ -26,7 +26,7 @@ use crate::{Error, reduce};
 /// ```
 ///
 /// [^dippe]: Dippé, Mark; Wold, Erling Henry (1985). *Antialiasing Through Stochastic Sampling*.
-///     <https://doi.org/10.1145/325334.325182>
+///     Computer Graphics 19(3), 69-78.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Periodogram {
     /// Rows of the second frequency from `-largest` to `largest`, for the first one from 0 to `largest`.

@@ -2,6 +2,7 @@
 
 mod cell;
 mod cells;
+mod descent;
 mod grid;
 mod line;
 mod plane;

@@ -31,7 +31,7 @@ use crate::{Error, reduce};
 /// [`Error::Refused`] for a base below 2, and a count that is no power of the base.
 ///
 /// [^niederreiter]: Niederreiter, Harald (1987). *Point Sets and Sequences with Small Discrepancy*.
-///     <https://doi.org/10.1007/BF01294651>
+///     Monatshefte für Mathematik 104, 273-337.
 pub fn t_value(points: &Points<'_>, base: u32) -> Result<u32, Error> {
     if base < 2 {
         return Err(Error::refused("base of a net", "at least 2", base));

@@ -23,6 +23,8 @@ pub struct Description {
     pub emitters: Vec<Emitter>,
     /// Objects of the file that nothing refers to.
     pub unused: Vec<Place>,
+    /// Where the scene stands.
+    pub place: Place,
 }
 
 /// The scene that a document describes.
@@ -86,6 +88,7 @@ pub(super) fn describe(document: &Document) -> Result<Description, SceneError> {
     {
         return Err(query.stray(stray));
     }
+    let place = query.place().clone();
     query.finish()?;
     let reached = context.reached.borrow();
     let unused = children
@@ -99,5 +102,6 @@ pub(super) fn describe(document: &Document) -> Result<Description, SceneError> {
         shapes,
         emitters,
         unused,
+        place,
     })
 }

@@ -1,31 +1,72 @@
 //! How surfaces scatter light: one law a file.
 //!
-//! | law | light goes | coordinates per direction |
+//! | law | light goes | coordinates per direction, in order |
 //! |---|---|---|
-//! | [`Lambertian`] | everywhere on the side it came from | 2 |
-//! | [`Mirror`] | one way | 0 |
-//! | [`Dielectric`] | one of two ways | 1 |
+//! | [`Lambertian`], [`Diffuse`] | everywhere on the side it came from | 2 |
+//! | [`Mirror`], [`Conductor`] | one way | 0 |
+//! | [`RoughConductor`] | around one way | 2 |
+//! | [`Dielectric`], [`ThinDielectric`] | one of two ways | 1 |
+//! | [`RoughDielectric`] | around one of two ways | 2, 1 |
+//! | [`Plastic`] | one way, or everywhere | 1, then 2 if it is everywhere |
+//! | [`RoughPlastic`] | around one way, and everywhere | 1, 2 |
+//! | [`Null`] | straight on | 0 |
+//! | [`TwoSided`], [`BumpMap`], [`NormalMap`] | as another law has it | as the other law |
+//! | [`Mask`] | straight on, or as another law has it | 1, then as the other law |
+//! | [`Blend`] | as one of two laws has it | 1, then as the one |
 //! | [`Material`] | as any of them | as they do |
 //!
 //! # Writing your own
 //!
-//! Implement [`Bsdf`]. A scene has one type of them: an enum of its own, as [`Material`] is, where it mixes
-//! several.
+//! Implement [`Law`], in the frame of the surface, and render it with [`Framed`]; or, where that is slower than need be,
+//! [`Bsdf`]. A scene has one type of them: an enum of its own, as [`Material`] is, where it mixes several.
 
+mod blend;
+mod bump_map;
+mod conductor;
 mod dielectric;
+mod diffuse;
+mod fresnel;
 mod lambertian;
+mod law;
+mod mask;
 mod material;
+mod microfacets;
 mod mirror;
+mod normal_map;
+mod null;
+mod plastic;
+mod relief;
+mod rough_conductor;
+mod rough_dielectric;
+mod rough_plastic;
+mod thin_dielectric;
+mod two_sided;
 
 use glam::Vec3A;
 
 use super::{Detail, Surface};
 use crate::Sampler;
 
-pub use dielectric::Dielectric;
+pub use blend::Blend;
+pub use bump_map::BumpMap;
+pub use conductor::Conductor;
+pub use dielectric::{Dielectric, Tint};
+pub use diffuse::Diffuse;
 pub use lambertian::Lambertian;
+pub use law::{Framed, Law};
+pub use mask::Mask;
 pub use material::Material;
+pub use microfacets::{Distribution, Roughness};
 pub use mirror::Mirror;
+pub use normal_map::NormalMap;
+pub use null::Null;
+pub use plastic::{Plastic, Saturation};
+pub use relief::Relief;
+pub use rough_conductor::RoughConductor;
+pub use rough_dielectric::RoughDielectric;
+pub use rough_plastic::RoughPlastic;
+pub use thin_dielectric::ThinDielectric;
+pub use two_sided::TwoSided;
 
 /// A bidirectional scattering distribution function.
 ///
@@ -39,6 +80,12 @@ pub trait Bsdf: Sync {
     /// Whether light is scattered to single directions only, wherever the surface is hit, so that
     /// [`evaluate`](Self::evaluate) is zero and no light is worth sampling.
     fn is_delta(&self) -> bool;
+
+    /// The law as [`Lambertian`], if it is that: a scene of nothing else may be traced many paths at once. `None` unless
+    /// implemented.
+    fn as_lambertian(&self) -> Option<&Lambertian> {
+        None
+    }
 
     /// The value for a pair of directions, times the cosine of `into`, and the density with which
     /// [`sample`](Self::sample) draws `into`. Single directions do not count.

@@ -7,11 +7,13 @@
 //! | filter | reaches |
 //! |---|---|
 //! | [`BoxFilter`] | its own pixel |
+//! | [`Centre`] | nothing but a point: to be compared with |
 //! | [`Separable`] with [`Tent`], [`Gaussian`], [`Mitchell`], [`Lanczos`] or a [`Profile`] of one's own | as it says |
 //!
 //! [^ernst]: Ernst, Manfred; Stamminger, Marc; Greiner, Günther (2006). *Filter Importance Sampling*.
 //!     <https://doi.org/10.1109/RT.2006.280223>
 
+mod centre;
 mod gaussian;
 mod lanczos;
 mod mitchell;
@@ -19,6 +21,7 @@ mod separable;
 mod square;
 mod tent;
 
+pub use centre::Centre;
 pub use gaussian::Gaussian;
 pub use lanczos::Lanczos;
 pub use mitchell::Mitchell;

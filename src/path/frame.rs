@@ -4,9 +4,9 @@ use core::f32::consts::{FRAC_1_PI, FRAC_PI_4};
 
 use glam::Vec3A;
 
-/// A right-handed orthonormal basis.
+/// A right-handed orthonormal basis: the frame in which [laws of scattering](super::bsdf::Law) work.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::path) struct Frame {
+pub struct Frame {
     tangent: Vec3A,
     bitangent: Vec3A,
     normal: Vec3A,
@@ -18,7 +18,7 @@ impl Frame {
     /// [^duff]: Duff, Tom; et al. (2017). *Building an Orthonormal Basis, Revisited*.
     ///     <https://jcgt.org/published/0006/01/01/>
     #[inline]
-    pub(in crate::path) fn around(normal: Vec3A) -> Self {
+    pub fn around(normal: Vec3A) -> Self {
         let sign = 1.0_f32.copysign(normal.z);
         let a = -1.0 / (sign + normal.z);
         let b = normal.x * normal.y * a;
@@ -33,9 +33,40 @@ impl Frame {
         }
     }
 
+    /// The basis whose third vector is `normal`, of length 1, and whose first one is as near as can be to `tangent`; any
+    /// such basis where the tangent is parallel to the normal or none.
+    #[inline]
+    pub fn along(normal: Vec3A, tangent: Vec3A) -> Self {
+        let across = tangent - normal * normal.dot(tangent);
+        let Some(tangent) = across.try_normalize() else {
+            return Self::around(normal);
+        };
+        Self {
+            tangent,
+            bitangent: normal.cross(tangent),
+            normal,
+        }
+    }
+
+    /// The third vector of the basis.
+    #[inline]
+    pub fn normal(&self) -> Vec3A {
+        self.normal
+    }
+
+    /// The coordinates of a vector in this basis.
+    #[inline]
+    pub fn local(&self, vector: Vec3A) -> Vec3A {
+        Vec3A::new(
+            self.tangent.dot(vector),
+            self.bitangent.dot(vector),
+            self.normal.dot(vector),
+        )
+    }
+
     /// The vector with the given coordinates in this basis.
     #[inline]
-    pub(in crate::path) fn out(&self, local: Vec3A) -> Vec3A {
+    pub fn out(&self, local: Vec3A) -> Vec3A {
         self.tangent * local.x + self.bitangent * local.y + self.normal * local.z
     }
 }

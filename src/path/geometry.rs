@@ -1,13 +1,25 @@
 //! All shapes of a scene, and which of them a ray meets.
 
+mod copies;
+mod kind;
+mod soup;
 mod sweep;
 mod tree;
 
+use glam::Vec3A;
+
 use super::Shading;
 use super::ray::{Ray, Surface};
-use super::shape::{Primitive, Shape};
+#[cfg(feature = "simd")]
+use super::shape::Flat;
+use super::shape::{Mesh, Primitive, Shape};
 
-use sweep::Sweep;
+pub(in crate::path) use copies::Copied;
+use copies::Copies;
+#[cfg(feature = "simd")]
+pub(in crate::path) use kind::{Kind, axis};
+use soup::Soup;
+pub(in crate::path) use sweep::Sweep;
 use tree::Tree;
 
 /// The shapes of a scene, and a way to find them.
@@ -15,6 +27,8 @@ use tree::Tree;
 pub(in crate::path) struct Geometry {
     shapes: Vec<Primitive>,
     search: Search,
+    soup: Option<Soup>,
+    copies: Option<Copies>,
 }
 
 /// How the shapes that a ray meets are found.
@@ -36,46 +50,148 @@ struct Found {
 /// The nearest shape that a ray meets.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::path) struct Hit {
-    pub(in crate::path) shape: usize,
+    /// Which part of the scene: the shapes come first, then the meshes, then the parts of groups that are copied.
+    pub(in crate::path) part: usize,
     pub(in crate::path) surface: Surface,
+    /// Which triangle of all meshes, if it is one.
+    triangle: usize,
+    /// Which copy, if it is one.
+    copy: Option<usize>,
 }
 
 /// Up to so many shapes are swept over: there a sweep of vectors is faster than a tree.
 const FEW: usize = 48;
 
+/// The smallest box around boxes.
+fn around(boxes: impl Iterator<Item = [Vec3A; 2]>) -> [Vec3A; 2] {
+    let nothing = [Vec3A::INFINITY, Vec3A::NEG_INFINITY];
+    boxes.fold(nothing, |[low, high], [l, h]| [low.min(l), high.max(h)])
+}
+
 impl Geometry {
-    pub(in crate::path) fn new(shapes: Vec<Primitive>) -> Self {
+    pub(in crate::path) fn new(
+        shapes: Vec<Primitive>,
+        meshes: Vec<Mesh>,
+        copies: Vec<Copied>,
+    ) -> Self {
         let search = if shapes.len() <= FEW {
             Search::Sweep(Sweep::new(&shapes))
         } else {
             Search::Tree(Tree::new(&shapes))
         };
-        Self { shapes, search }
+        Self {
+            shapes,
+            search,
+            soup: Soup::new(meshes),
+            copies: Copies::new(copies),
+        }
+    }
+
+    /// The corners of a box around everything.
+    fn bounds(&self) -> [Vec3A; 2] {
+        let shapes = self.shapes.iter().map(Shape::bounds);
+        let soup = self.soup.iter().map(Soup::bounds);
+        let copies = self.copies.iter().map(Copies::bounds);
+        around(shapes.chain(soup).chain(copies))
     }
 
     /// The first shape that the ray meets.
     #[inline]
     pub(in crate::path) fn nearest(&self, ray: &Ray) -> Option<Hit> {
+        if self.soup.is_none() && self.copies.is_none() {
+            return self.nearest_shape(ray, f32::INFINITY).map(|(hit, _)| hit);
+        }
+        self.nearest_within(ray, f32::INFINITY).map(|(hit, _)| hit)
+    }
+
+    /// The first shape that the ray meets before `limit`, and its distance.
+    fn nearest_within(&self, ray: &Ray, mut limit: f32) -> Option<(Hit, f32)> {
+        let mut nearest = self.nearest_shape(ray, limit);
+        if let Some((_, distance)) = nearest {
+            limit = distance;
+        }
+        if let Some(soup) = &self.soup
+            && let Some(Found { shape, distance }) = soup.nearest(ray, limit)
+        {
+            limit = distance;
+            let hit = Hit {
+                part: self.shapes.len() + soup.mesh(shape),
+                surface: soup.surface(shape, ray, distance),
+                triangle: shape,
+                copy: None,
+            };
+            nearest = Some((hit, distance));
+        }
+        let copies = self.copies.as_ref();
+        copies
+            .and_then(|copies| copies.nearest(ray, limit))
+            .or(nearest)
+    }
+
+    #[inline]
+    fn nearest_shape(&self, ray: &Ray, limit: f32) -> Option<(Hit, f32)> {
         let Found { shape, distance } = match &self.search {
-            Search::Sweep(sweep) => sweep.nearest(ray),
-            Search::Tree(tree) => tree.nearest(&self.shapes, ray),
+            Search::Sweep(sweep) => sweep.nearest(ray).filter(|found| found.distance < limit),
+            Search::Tree(tree) => tree.nearest(&self.shapes, ray, limit),
         }?;
-        let surface = self.shapes[shape].surface(ray, distance);
-        Some(Hit { shape, surface })
+        let hit = Hit {
+            part: shape,
+            surface: self.shapes[shape].surface(ray, distance),
+            triangle: 0,
+            copy: None,
+        };
+        Some((hit, distance))
     }
 
     /// The parametrisation of a shape at a point of it.
-    #[inline]
     pub(in crate::path) fn shading(&self, hit: &Hit) -> Shading {
-        self.shapes[hit.shape].shading(&hit.surface)
+        if let (Some(copy), Some(copies)) = (hit.copy, &self.copies) {
+            return copies.shading(copy, hit);
+        }
+        match (self.shapes.get(hit.part), &self.soup) {
+            (Some(shape), _) => shape.shading(&hit.surface),
+            (None, Some(soup)) => soup.shading(hit.triangle, &hit.surface),
+            (None, None) => unreachable!("a hit is of a shape or of a mesh"),
+        }
+    }
+
+    /// The shapes, if they are few and all there is.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn few(&self) -> Option<(&[Primitive], &Sweep)> {
+        match &self.search {
+            Search::Sweep(sweep) if self.soup.is_none() && self.copies.is_none() => {
+                Some((&self.shapes, sweep))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a flat shape can be in the way between two points of the scene.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn divides(&self, flat: &Flat) -> bool {
+        kind::divides(flat, &self.shapes)
+    }
+
+    /// Whether any shape is in the way from one point of the scene to another, at `limit`.
+    #[inline]
+    pub(in crate::path) fn divided(&self, ray: &Ray, limit: f32) -> bool {
+        match &self.search {
+            Search::Sweep(sweep) if self.soup.is_none() && self.copies.is_none() => {
+                sweep.divided(ray, limit)
+            }
+            _ => self.occluded(ray, limit),
+        }
     }
 
     /// Whether the ray meets any shape nearer than `limit`.
     #[inline]
     pub(in crate::path) fn occluded(&self, ray: &Ray, limit: f32) -> bool {
-        match &self.search {
+        let shapes = match &self.search {
             Search::Sweep(sweep) => sweep.occluded(ray, limit),
             Search::Tree(tree) => tree.occluded(&self.shapes, ray, limit),
-        }
+        };
+        let soup = |soup: &Soup| soup.occluded(ray, limit);
+        let copies = |copies: &Copies| copies.occluded(ray, limit);
+        shapes || self.soup.as_ref().is_some_and(soup) || self.copies.as_ref().is_some_and(copies)
     }
 }

@@ -186,7 +186,10 @@ pub struct FileError {
 }
 
 impl FileError {
-    fn new(path: &Path, reason: impl Into<Box<dyn core::error::Error + Send + Sync>>) -> Self {
+    pub(in crate::path) fn new(
+        path: &Path,
+        reason: impl Into<Box<dyn core::error::Error + Send + Sync>>,
+    ) -> Self {
         Self {
             path: path.to_owned(),
             reason: reason.into(),

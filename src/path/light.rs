@@ -3,7 +3,7 @@
 //! | part | coordinates per vertex |
 //! |---|---|
 //! | [`NoLight`] | 0 |
-//! | [`AreaLights`] | 2, however many there are |
+//! | [`AreaLights`], [`LightTree`] | 2, however many there are |
 //! | [`NoEnvironment`], [`Constant`] | 0 |
 //! | [`Sky`] | 2 |
 //! | [`Surroundings`]: [`PointLight`], [`SpotLight`], [`DirectionalLight`] and a background | 0 to 3 |
@@ -20,11 +20,13 @@ mod point;
 mod sky;
 mod spot;
 mod surroundings;
+mod tree;
 
-use glam::Vec3A;
+use glam::{Affine2, Vec3A};
 
-use super::shape::Primitive;
-use super::{Segment, Shading, Surface};
+use super::shape::{Primitive, Shape};
+use super::texture::Texture;
+use super::{Segment, Surface};
 use crate::{Error, Sampler};
 
 pub use area::AreaLights;
@@ -34,6 +36,7 @@ pub use point::PointLight;
 pub use sky::Sky;
 pub use spot::SpotLight;
 pub use surroundings::{Background, Source, Surroundings};
+pub use tree::LightTree;
 
 /// All sources of light that are shapes of the scene.
 pub trait Light: Sync + Sized {
@@ -44,28 +47,57 @@ pub trait Light: Sync + Sized {
     /// [`Error::Refused`] for a number of emitters that this type is not made for.
     fn new(emitters: Vec<Emitter>) -> Result<Self, Error>;
 
+    /// The lights as [`AreaLights`], if they are that, perhaps none: a scene of such lights may be traced many paths at
+    /// once. `None` unless implemented.
+    fn as_area_lights(&self) -> Option<&AreaLights> {
+        None
+    }
+
     /// The way to a point of the lights, drawn from the coordinates of `u` so as to light the surface `from` well.
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination>;
 
     /// What the point `surface` of an emitter that a ray from `from` has hit emits towards it, and the density with
-    /// which [`sample`](Self::sample) would have drawn the point. `shading` tells more of the point where that
-    /// matters.
-    fn emitted(
-        &self,
-        emitter: u32,
-        from: Vec3A,
-        surface: &Surface,
-        shading: impl FnOnce() -> Shading,
-    ) -> Emission;
+    /// which [`sample`](Self::sample) would have drawn the point.
+    fn emitted(&self, emitter: u32, from: Vec3A, surface: &Surface) -> Emission;
 }
 
-/// A shape that emits light from its outer side, the same radiance from every point to every direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A shape that emits light from its outer side, from each point the same to every direction.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Emitter {
     /// The shape.
     pub shape: Primitive,
-    /// The radiance in linear red, green and blue.
+    /// The radiance in linear red, green and blue; of a picture the mean.
     pub radiance: Vec3A,
+    /// What varies over the shape, if anything does.
+    pub picture: Option<Picture>,
+}
+
+/// Radiance that varies over a shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// The radiance at texture coordinates.
+    pub texture: Texture,
+    /// From the texture coordinates of the shape to those of the picture.
+    pub place: Affine2,
+}
+
+impl Emitter {
+    /// The radiance that the point `surface` of the shape emits.
+    #[inline]
+    pub fn radiance_at(&self, surface: &Surface) -> Vec3A {
+        match &self.picture {
+            None => self.radiance,
+            Some(Picture { texture, place }) => {
+                let uv = self.shape.shading(surface).uv;
+                texture.color_at(place.transform_point2(uv))
+            }
+        }
+    }
+
+    /// How much light it emits in all, up to a factor that is the same for all emitters.
+    fn power(&self) -> f64 {
+        f64::from(self.shape.area()) * self.radiance.as_dvec3().element_sum()
+    }
 }
 
 /// Light that may arrive at a surface.
@@ -115,13 +147,18 @@ impl Light for NoLight {
         }
     }
 
+    fn as_area_lights(&self) -> Option<&AreaLights> {
+        static NONE: AreaLights = AreaLights::NONE;
+        Some(&NONE)
+    }
+
     #[inline]
     fn sample<D, S: Sampler>(&self, _: &Surface<D>, _: &mut S) -> Option<Illumination> {
         None
     }
 
     #[inline]
-    fn emitted(&self, _: u32, _: Vec3A, _: &Surface, _: impl FnOnce() -> Shading) -> Emission {
+    fn emitted(&self, _: u32, _: Vec3A, _: &Surface) -> Emission {
         Emission::NONE
     }
 }

@@ -6,7 +6,7 @@ use super::Ray;
 use super::bsdf::Bsdf;
 use super::light::{Environment, Light};
 use super::scene::Scene;
-use crate::integrands::{Heuristic, Survival};
+use crate::integrands::Survival;
 use crate::{Error, Sampler};
 
 /// Which paths of light are followed.
@@ -14,8 +14,9 @@ use crate::{Error, Sampler};
 /// By default all: paths end by Russian roulette, without bias, from their fifth segment on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Paths {
-    longest: u32,
-    roulette_from: u32,
+    pub(in crate::path) longest: u32,
+    pub(in crate::path) roulette_from: u32,
+    pub(in crate::path) hides_lights: bool,
 }
 
 impl Default for Paths {
@@ -23,6 +24,7 @@ impl Default for Paths {
         Self {
             longest: u32::MAX,
             roulette_from: 5,
+            hides_lights: false,
         }
     }
 }
@@ -51,6 +53,13 @@ impl Paths {
         self
     }
 
+    /// Leaves out of the picture what emits light, but not its light: the camera looks through shapes that shine, and sees
+    /// nothing where it would see what is around the scene.
+    pub fn hiding_lights(mut self) -> Self {
+        self.hides_lights = true;
+        self
+    }
+
     /// The radiance that arrives at the origin of `ray` from its direction: an estimate, whose mean over the
     /// coordinates of `u` is the solution of the rendering equation.[^kajiya]
     ///
@@ -67,6 +76,9 @@ impl Paths {
         u: &mut S,
     ) -> Vec3 {
         let mut radiance = Vec3A::ZERO;
+        if self.hides_lights {
+            ray = scene.past_lights(ray);
+        }
         // What a unit of radiance at the end of the path adds to the pixel.
         let mut throughput = Vec3A::ONE;
         // The density with which the direction of the ray was drawn. The camera's is no choice.
@@ -75,15 +87,15 @@ impl Paths {
         for segment in 1.. {
             let Some(vertex) = scene.meet(&ray) else {
                 let emission = scene.environment().emitted(ray.direction);
-                radiance += throughput * emission.radiance * power(density, emission.density);
+                if segment > 1 || !self.hides_lights {
+                    radiance += throughput * emission.radiance * power(density, emission.density);
+                }
                 break;
             };
             // Emitted light, met by a direction that was drawn at the surface before.
             if let Some(emitter) = vertex.emitter {
-                let shading = || vertex.shading();
-                let emission = scene
-                    .lights()
-                    .emitted(emitter, ray.origin, vertex.place(), shading);
+                let lights = scene.lights();
+                let emission = lights.emitted(emitter, ray.origin, vertex.place());
                 radiance += throughput * emission.radiance * power(density, emission.density);
             }
             if segment >= self.longest {
@@ -110,17 +122,9 @@ impl Paths {
             throughput *= next.weight;
             eta *= next.eta;
             if segment >= self.roulette_from {
-                let carried = f64::from(throughput.max_element() * (eta * eta));
-                // A black path is common, and an error for each would be slow. NaN goes on, to be seen.
-                if carried <= 0.0 {
-                    break;
-                }
-                let survival = Survival::new(carried.min(0.95)).ok();
-                let Some(weight) = survival.and_then(|survival| survival.play(u.next_1d())) else {
+                let Some(weight) = play(throughput.max_element() * (eta * eta), u) else {
                     break;
                 };
-                #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-                let weight = weight as f32;
                 throughput *= weight;
             }
             density = next.density;
@@ -133,11 +137,27 @@ impl Paths {
     }
 }
 
-/// The weight of a sample that was drawn with density `own`, where another technique has the density `other`: the
-/// power heuristic. The density of a direction without alternative is infinite, its weight 1.
+/// Russian roulette: the weight of a path that goes on, `None` for one that ends, from what the path still carries.
 #[inline]
-fn power(own: f32, other: f32) -> f32 {
+pub(in crate::path) fn play<S: Sampler>(carried: f32, u: &mut S) -> Option<f32> {
+    // A black path is common, and an error for each would be slow. NaN goes on, to be seen.
+    if carried <= 0.0 {
+        return None;
+    }
+    let survival = Survival::new(f64::from(carried).min(0.95)).ok()?;
+    let weight = survival.play(u.next_1d())?;
     #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-    let weight = Heuristic::Power.weight(own.into(), &[other.into()]) as f32;
-    weight
+    Some(weight as f32)
+}
+
+/// The weight of a sample that was drawn with density `own`, where another technique has the density `other`: the
+/// power heuristic, as [`Heuristic::Power`](crate::integrands::Heuristic::Power) has it, in `f32`. The density of a direction
+/// without alternative is infinite, its weight 1.
+#[inline]
+pub(super) fn power(own: f32, other: f32) -> f32 {
+    if !(own > 0.0) {
+        return 0.0;
+    }
+    let ratio = if own == other { 1.0 } else { other / own };
+    1.0 / (1.0 + ratio * ratio)
 }

@@ -9,10 +9,12 @@ use super::bsdf::Bsdf;
 use super::filter::{BoxFilter, Filter};
 use super::image::{Image, Row};
 use super::light::{Environment, Light};
+#[cfg(feature = "simd")]
+use super::packet::Packet;
 use super::sensor::Sensor;
-use super::{Paths, Scene};
+use super::{Paths, Ray, Scene};
 use crate::points::pixel;
-use crate::{Error, Estimate, Estimator, Incomplete, Integrand, Sampler, each};
+use crate::{Error, Estimate, Estimator, Incomplete, Integrand, Outcome, Sampler, each};
 
 /// The mean radiance around a pixel, as an integral over the unit cube: two coordinates for the point of the
 /// [film](Filter::sample), those of the [sensor](Sensor::ray), those of the [path](Paths::radiance).
@@ -35,22 +37,73 @@ pub struct Pixel<'a, B, L, E, C, F = BoxFilter> {
 /// Coordinates computed ahead: those of the film and of two surfaces. Few paths end before.
 const AHEAD: u32 = 10;
 
+/// Coordinates computed ahead of paths in packets, where a path that needs more of them than others holds them up.
+#[cfg(feature = "simd")]
+const AHEAD_OF_PACKETS: u32 = 34;
+
+impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Pixel<'_, B, L, E, C, F> {
+    /// The ray of a path, and what its radiance counts.
+    #[inline]
+    fn start<S: Sampler>(&self, u: &mut S) -> Start {
+        let seen = self.filter.sample(self.position, self.size, u.next_2d());
+        let film = core::array::from_fn(|axis| seen.point[axis] / f64::from(self.size[axis]));
+        Start {
+            ray: self.sensor.ray(film, u),
+            weight: seen.weight,
+        }
+    }
+}
+
+#[cfg(feature = "simd")]
+impl<B, L, E, C, F> Pixel<'_, B, L, E, C, F> {
+    /// The scene for many paths at once, if it is one of those and the paths are too.
+    #[inline]
+    fn packet(&self) -> Option<&Packet> {
+        if self.paths.hides_lights {
+            return None;
+        }
+        self.scene.packet()
+    }
+}
+
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
     for Pixel<'_, B, L, E, C, F>
 {
     type Value = Vec3;
 
+    const AT_ONCE: usize = 256;
+
     #[inline]
     fn evaluate<S: Sampler>(&self, u: &mut S) -> Vec3 {
-        let seen = self.filter.sample(self.position, self.size, u.next_2d());
-        let film = core::array::from_fn(|axis| seen.point[axis] / f64::from(self.size[axis]));
-        let ray = self.sensor.ray(film, u);
-        self.paths.radiance(self.scene, ray, u) * seen.weight
+        let Start { ray, weight } = self.start(u);
+        self.paths.radiance(self.scene, ray, u) * weight
+    }
+
+    #[inline]
+    fn evaluate_many<S: Sampler>(&self, samplers: &mut [S], values: &mut [Vec3]) {
+        #[cfg(feature = "simd")]
+        if let Some(packet) = self.packet() {
+            return packet.radiance(self.paths, |u| self.start(u), samplers, values);
+        }
+        for (u, value) in samplers.iter_mut().zip(values) {
+            *value = self.evaluate(u);
+        }
     }
 
     fn dimensions(&self) -> u32 {
+        #[cfg(feature = "simd")]
+        if self.packet().is_some() {
+            return AHEAD_OF_PACKETS;
+        }
         AHEAD
     }
+}
+
+/// Where a path begins, and what it counts.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::path) struct Start {
+    pub(in crate::path) ray: Ray,
+    pub(in crate::path) weight: f32,
 }
 
 /// What to render, and from where.
@@ -118,7 +171,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     /// one another, and anybody can compute a pixel again, or go on with it:
     ///
     /// ```
-    /// use estimand::path::{Pixel, scenes};
+    /// use estimand::path::scenes;
     /// use estimand::points::pixel;
     /// use estimand::{Estimator, MonteCarlo};
     ///
@@ -126,15 +179,8 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     /// let (size, [x, y], seed) = ([8, 8], [3, 5], 1);
     /// let picture = view.render(size, seed, |key| MonteCarlo::new(16, key))?;
     ///
-    /// let again = Pixel {
-    ///     scene: &view.scene,
-    ///     sensor: &view.sensor,
-    ///     filter: &view.filter,
-    ///     paths: view.paths,
-    ///     position: [x, y],
-    ///     size,
-    /// };
-    /// let again = MonteCarlo::new(16, pixel::seed([x, y], seed)).estimate(&again)?;
+    /// let again = MonteCarlo::new(16, pixel::seed([x, y], seed));
+    /// let again = again.estimate(&view.pixel([x, y], size))?;
     /// assert_eq!(again.mean, picture.pixels()[(y * size[0] + x) as usize]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -172,6 +218,58 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         estimator: impl Fn(u64) -> T + Sync,
         proceed: impl Fn(u32) -> bool + Sync,
     ) -> Result<Image, Unfinished> {
+        let estimate = |position, key| estimator(key).estimate(&self.pixel(position, size));
+        Image::of_pixels_while(size, seed, estimate, proceed)
+    }
+
+    /// The pixel in column and row `position` of a picture of `size`.
+    pub fn pixel(&self, position: [u32; 2], size: [u32; 2]) -> Pixel<'_, B, L, E, C, F> {
+        Pixel {
+            scene: &self.scene,
+            sensor: &self.sensor,
+            filter: &self.filter,
+            paths: self.paths,
+            position,
+            size,
+        }
+    }
+}
+
+impl Image {
+    /// The picture with whatever `estimate` gives for each pixel, told its column and row and its seed, as
+    /// [`View::render`] has it.
+    ///
+    /// ```
+    /// use estimand::path::{Image, scenes};
+    /// use estimand::{Estimator, MonteCarlo};
+    ///
+    /// // More samples in the middle.
+    /// let (view, size) = (scenes::cornell_box(), [16, 16]);
+    /// let picture = Image::of_pixels(size, 1, |[x, y], key| {
+    ///     let count = if (4..12).contains(&x) && (4..12).contains(&y) { 64 } else { 8 };
+    ///     MonteCarlo::new(count, key).estimate(&view.pixel([x, y], size))
+    /// })?;
+    /// assert_eq!(picture.used(), 64 * 64 + 192 * 8);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`View::render`].
+    pub fn of_pixels(
+        size: [u32; 2],
+        seed: u64,
+        estimate: impl Fn([u32; 2], u64) -> Outcome<Vec3> + Sync,
+    ) -> Result<Self, Unfinished> {
+        Self::of_pixels_while(size, seed, estimate, |_| true)
+    }
+
+    fn of_pixels_while(
+        size: [u32; 2],
+        seed: u64,
+        estimate: impl Fn([u32; 2], u64) -> Outcome<Vec3> + Sync,
+        proceed: impl Fn(u32) -> bool + Sync,
+    ) -> Result<Self, Unfinished> {
         let [width, height] = size;
         if width == 0 || height == 0 {
             let given = format_args!("{width} x {height}");
@@ -188,15 +286,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
             }
             for x in 0..width {
                 let position = [x, y];
-                let integrand = Pixel {
-                    scene: &self.scene,
-                    sensor: &self.sensor,
-                    filter: &self.filter,
-                    paths: self.paths,
-                    position,
-                    size,
-                };
-                match estimator(pixel::seed(position, seed)).estimate(&integrand) {
+                match estimate(position, pixel::seed(position, seed)) {
                     Ok(estimate) => row.push(&estimate),
                     Err(incomplete) => {
                         first_stopped.fetch_min(y, Ordering::Relaxed);
@@ -225,10 +315,10 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
                     reason: incomplete.reason,
                     position: Some(position),
                     so_far: incomplete.so_far,
-                    image: Some(Box::new(Image::of_rows(size, &finished))),
+                    image: Some(Box::new(Self::of_rows(size, &finished))),
                 });
             }
         }
-        Ok(Image::of_rows(size, &finished))
+        Ok(Self::of_rows(size, &finished))
     }
 }

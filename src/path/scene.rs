@@ -1,13 +1,18 @@
 //! What is rendered.
 
-use glam::Vec3A;
+use std::sync::Arc;
+
+use glam::{Affine2, Affine3A, Mat2, Vec3A};
 
 use super::bsdf::{Bsdf, Material};
 use super::color;
-use super::geometry::{Geometry, Hit};
-use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment};
+use super::geometry::{Copied, Geometry, Hit};
+use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment, Picture};
+#[cfg(feature = "simd")]
+use super::packet::{Emitted, Optics, Packet};
 use super::ray::{Ray, Surface, gamma};
-use super::shape::Primitive;
+use super::shape::{Mesh, Primitive};
+use super::texture::{self, Parameter, Texture};
 use super::{Detail, Shading};
 use crate::Error;
 
@@ -15,8 +20,39 @@ use crate::Error;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object<B> {
     shapes: Vec<Primitive>,
+    meshes: Vec<Mesh>,
     bsdf: B,
-    radiance: Vec3A,
+    radiance: Radiance,
+}
+
+/// What an object emits.
+#[derive(Clone, Debug, PartialEq)]
+enum Radiance {
+    Nothing,
+    Uniform(Vec3A),
+    Picture(Texture),
+}
+
+impl Radiance {
+    /// The shape that emits it, given the way from the shape's texture coordinates to those of a picture.
+    fn emitter(&self, shape: Primitive, place: Affine2) -> Emitter {
+        let (radiance, picture) = match self {
+            Self::Nothing => (Vec3A::ZERO, None),
+            Self::Uniform(radiance) => (*radiance, None),
+            Self::Picture(texture) => {
+                let texture = texture.clone();
+                (
+                    Vec3A::splat(texture.mean()),
+                    Some(Picture { texture, place }),
+                )
+            }
+        };
+        Emitter {
+            shape,
+            radiance,
+            picture,
+        }
+    }
 }
 
 impl<B> Object<B> {
@@ -24,8 +60,17 @@ impl<B> Object<B> {
     pub fn new(shapes: impl IntoIterator<Item = impl Into<Primitive>>, bsdf: impl Into<B>) -> Self {
         Self {
             shapes: shapes.into_iter().map(Into::into).collect(),
+            meshes: Vec::new(),
             bsdf: bsdf.into(),
-            radiance: Vec3A::ZERO,
+            radiance: Radiance::Nothing,
+        }
+    }
+
+    /// A mesh that scatters light as `bsdf` says.
+    pub fn mesh(mesh: Mesh, bsdf: impl Into<B>) -> Self {
+        Self {
+            meshes: vec![mesh],
+            ..Self::new([] as [Primitive; 0], bsdf)
         }
     }
 
@@ -35,9 +80,39 @@ impl<B> Object<B> {
     ///
     /// [`Error::Refused`] for a component that is negative or not finite.
     pub fn emitting(mut self, radiance: [f32; 3]) -> Result<Self, Error> {
-        self.radiance = color::radiance(radiance)?;
+        let radiance = color::radiance(radiance)?;
+        self.radiance = if radiance == Vec3A::ZERO {
+            Radiance::Nothing
+        } else {
+            Radiance::Uniform(radiance)
+        };
         Ok(self)
     }
+
+    /// The same, emitting light that varies over its shapes: `radiance` at their texture coordinates.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for a texture with a component that is negative or not finite.
+    pub fn emitting_picture(mut self, radiance: Texture) -> Result<Self, Error> {
+        self.radiance = match texture::finite("radiance", radiance)? {
+            Texture::Uniform(uniform) => {
+                return self.emitting(uniform.color(&()).to_array());
+            }
+            picture if picture.range()[1] > 0.0 => Radiance::Picture(picture),
+            _ => Radiance::Nothing,
+        };
+        Ok(self)
+    }
+}
+
+/// Objects that stand in a scene several times over, each time moved, turned and scaled as a whole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instances<B> {
+    /// What is copied. Nothing of it may emit light.
+    pub objects: Vec<Object<B>>,
+    /// From the coordinates of the objects to those of the scene, for each copy.
+    pub places: Vec<Affine3A>,
 }
 
 /// A scene: shapes, how they scatter light (`B`), which of them emit it (`L`) and what is around them (`E`).
@@ -63,6 +138,8 @@ pub struct Scene<B = Material, L = AreaLights, E = NoEnvironment> {
     bsdfs: Vec<B>,
     lights: L,
     environment: E,
+    #[cfg(feature = "simd")]
+    packet: Option<Box<Packet>>,
 }
 
 /// What belongs to a shape.
@@ -109,35 +186,149 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
     ///
     /// [`Error::Refused`] if the lights are of a type for more or fewer of them, and for 2^32 shapes or more.
     pub fn new(objects: Vec<Object<B>>, environment: E) -> Result<Self, Error> {
-        let count: usize = objects.iter().map(|object| object.shapes.len()).sum();
-        if u32::try_from(count).is_err() {
-            return Err(Error::refused("number of shapes", "below 2^32", count));
-        }
-        let (mut shapes, mut owners) = (Vec::new(), Vec::new());
-        let (mut bsdfs, mut emitters) = (Vec::new(), Vec::new());
-        for (bsdf, object) in (0..).zip(objects) {
-            bsdfs.push(object.bsdf);
-            for shape in object.shapes {
-                let emitter = if object.radiance == Vec3A::ZERO {
-                    DARK
-                } else {
-                    emitters.push(Emitter {
-                        shape,
-                        radiance: object.radiance,
-                    });
-                    u32::try_from(emitters.len() - 1).unwrap_or(DARK)
-                };
-                shapes.push(shape);
-                owners.push(Owner { bsdf, emitter });
+        Self::with_instances(objects, Vec::new(), environment)
+    }
+
+    /// The same with instances: objects that are stored once and stand in many places.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new); for instances that emit light; and for places that cannot be inverted.
+    pub fn with_instances(
+        objects: Vec<Object<B>>,
+        instances: Vec<Instances<B>>,
+        environment: E,
+    ) -> Result<Self, Error> {
+        let mut parts = Parts::default();
+        let (shapes, meshes) = parts.add(objects)?;
+        let mut copies = Vec::new();
+        for Instances { objects, places } in instances {
+            if objects
+                .iter()
+                .any(|object| object.radiance != Radiance::Nothing)
+            {
+                let given = "one that does";
+                return Err(Error::refused("instance", "one that emits no light", given));
+            }
+            let start = parts.owners.len();
+            let (shapes, meshes) = parts.add(objects)?;
+            let group = Arc::new(Geometry::new(shapes, meshes, Vec::new()));
+            for place in places {
+                copies.push(Copied::new(Arc::clone(&group), start, place)?);
             }
         }
-        Ok(Self {
-            geometry: Geometry::new(shapes),
-            owners,
-            bsdfs,
-            lights: L::new(emitters)?,
+        #[cfg_attr(
+            not(feature = "simd"),
+            expect(unused_mut, reason = "there are no packets")
+        )]
+        let mut scene = Self {
+            geometry: Geometry::new(shapes, meshes, copies),
+            owners: parts.owners,
+            bsdfs: parts.bsdfs,
+            lights: L::new(parts.emitters)?,
             environment,
-        })
+            #[cfg(feature = "simd")]
+            packet: None,
+        };
+        #[cfg(feature = "simd")]
+        {
+            scene.packet = scene.packed().map(Box::new);
+        }
+        Ok(scene)
+    }
+
+    /// The scene for many paths at once, if it is one of those.
+    #[cfg(feature = "simd")]
+    fn packed(&self) -> Option<Packet> {
+        let sky = self.environment.constant()?;
+        let lights = self.lights.as_area_lights()?;
+        let optics = |shape: usize| {
+            let owner = self.owners[shape];
+            let law = self.bsdfs[owner.bsdf as usize].as_lambertian()?;
+            let emitted = if owner.emitter == DARK {
+                None
+            } else {
+                Some(Emitted {
+                    emitter: owner.emitter,
+                    radiance: lights.radiance(owner.emitter)?,
+                    probability: lights.probability(owner.emitter),
+                })
+            };
+            Some(Optics {
+                albedo: law.albedo,
+                inner: true,
+                emitted,
+            })
+        };
+        Packet::new(&self.geometry, optics, lights, sky)
+    }
+}
+
+/// What the objects of a scene are made of.
+struct Parts<B> {
+    owners: Vec<Owner>,
+    bsdfs: Vec<B>,
+    emitters: Vec<Emitter>,
+}
+
+impl<B> Default for Parts<B> {
+    fn default() -> Self {
+        Self {
+            owners: Vec::new(),
+            bsdfs: Vec::new(),
+            emitters: Vec::new(),
+        }
+    }
+}
+
+impl<B> Parts<B> {
+    /// The shapes and the meshes of some objects, after their owners were added in this order. Meshes that emit
+    /// light are taken apart, since every triangle of them is a light.
+    fn add(&mut self, objects: Vec<Object<B>>) -> Result<(Vec<Primitive>, Vec<Mesh>), Error> {
+        let (mut shapes, mut meshes, mut owners_of_meshes) = (Vec::new(), Vec::new(), Vec::new());
+        for mut object in objects {
+            let bsdf = index(self.bsdfs.len())?;
+            self.bsdfs.push(object.bsdf);
+            let dark = Owner {
+                bsdf,
+                emitter: DARK,
+            };
+            if object.radiance == Radiance::Nothing {
+                owners_of_meshes.resize(owners_of_meshes.len() + object.meshes.len(), dark);
+                meshes.append(&mut object.meshes);
+                self.owners
+                    .resize(self.owners.len() + object.shapes.len(), dark);
+                shapes.append(&mut object.shapes);
+                continue;
+            }
+            let whole = object
+                .shapes
+                .into_iter()
+                .map(|shape| (shape, Affine2::IDENTITY));
+            let triangles = object.meshes.iter().flat_map(|mesh| {
+                (0..mesh.triangles().len()).map(|triangle| {
+                    let [a, b, c] = mesh.uvs(triangle);
+                    let place = Affine2::from_mat2_translation(Mat2::from_cols(b - a, c - a), a);
+                    (mesh.flat(triangle).into(), place)
+                })
+            });
+            for (shape, place) in whole.chain(triangles) {
+                let emitter = index(self.emitters.len())?;
+                self.emitters.push(object.radiance.emitter(shape, place));
+                self.owners.push(Owner { bsdf, emitter });
+                shapes.push(shape);
+            }
+        }
+        self.owners.append(&mut owners_of_meshes);
+        Ok((shapes, meshes))
+    }
+}
+
+/// An index below 2^32 - 1, which stands for none.
+fn index(index: usize) -> Result<u32, Error> {
+    match u32::try_from(index) {
+        Ok(index) if index != DARK => Ok(index),
+        _ => Err(Error::refused("number of shapes", "below 2^32", index)),
     }
 }
 
@@ -146,7 +337,7 @@ impl<B: Bsdf, L, E> Scene<B, L, E> {
     #[inline]
     pub fn meet(&self, ray: &Ray) -> Option<Vertex<'_, B>> {
         let hit = self.geometry.nearest(ray)?;
-        let owner = self.owners[hit.shape];
+        let owner = self.owners[hit.part];
         let detail = Detail::from_shading(|| self.geometry.shading(&hit));
         Some(Vertex {
             surface: hit.surface.with(detail),
@@ -158,11 +349,30 @@ impl<B: Bsdf, L, E> Scene<B, L, E> {
     }
 }
 
+impl<B: Bsdf, L, E> Scene<B, L, E> {
+    /// The same ray from behind the shapes that emit light which it meets first.
+    pub(in crate::path) fn past_lights(&self, mut ray: Ray) -> Ray {
+        while let Some(vertex) = self.meet(&ray)
+            && vertex.emitter.is_some()
+        {
+            ray.origin = vertex.surface.leave(ray.direction);
+        }
+        ray
+    }
+}
+
 impl<B, L, E> Scene<B, L, E> {
     /// The shapes that emit light.
     #[inline]
     pub fn lights(&self) -> &L {
         &self.lights
+    }
+
+    /// The scene for many paths at once, if it is one of those.
+    #[cfg(feature = "simd")]
+    #[inline]
+    pub(in crate::path) fn packet(&self) -> Option<&Packet> {
+        self.packet.as_deref()
     }
 
     /// What is around the shapes.
@@ -174,7 +384,10 @@ impl<B, L, E> Scene<B, L, E> {
     /// Whether any shape is in the way.
     #[inline]
     pub fn occluded(&self, segment: &Segment) -> bool {
-        self.geometry.occluded(&segment.ray, segment.length)
+        match segment.end {
+            End::Surface => self.geometry.divided(&segment.ray, segment.length),
+            End::Open => self.geometry.occluded(&segment.ray, segment.length),
+        }
     }
 }
 
@@ -186,6 +399,16 @@ pub struct Segment {
     /// How far it is to a margin off the other, less the rounding error of a distance; infinite where there is no other
     /// end.
     pub length: f32,
+    end: End,
+}
+
+/// What is at the end of a way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    /// A surface of the scene. So the way is inside the scene, where fewer shapes can be in it.
+    Surface,
+    /// Anything else.
+    Open,
 }
 
 impl Segment {
@@ -193,13 +416,13 @@ impl Segment {
     #[inline]
     pub fn between<D>(here: &Surface<D>, there: &Surface) -> Option<Self> {
         let toward = there.point - here.point;
-        Self::joining(here.leave(toward), there.leave(-toward))
+        Self::joining(here.leave(toward), there.leave(-toward), End::Surface)
     }
 
     /// The way from a surface to a point off all surfaces; `None` where they are not told apart.
     #[inline]
     pub fn to_point<D>(here: &Surface<D>, there: Vec3A) -> Option<Self> {
-        Self::joining(here.leave(there - here.point), there)
+        Self::joining(here.leave(there - here.point), there, End::Open)
     }
 
     /// The way from a surface in a direction of length 1, without end.
@@ -211,19 +434,21 @@ impl Segment {
                 direction,
             },
             length: f32::INFINITY,
+            end: End::Open,
         }
     }
 
     #[inline]
-    fn joining(origin: Vec3A, end: Vec3A) -> Option<Self> {
-        let way = end - origin;
+    fn joining(origin: Vec3A, to: Vec3A, end: End) -> Option<Self> {
+        let way = to - origin;
         let length = way.length();
         (length > 0.0).then(|| Self {
             ray: Ray {
                 origin,
-                direction: way / length,
+                direction: way * length.recip(),
             },
             length: length * (1.0 - gamma(8)),
+            end,
         })
     }
 }

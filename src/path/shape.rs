@@ -5,12 +5,19 @@
 //! | [`Flat::triangle`] | where its corners run counter-clockwise |
 //! | [`Flat::parallelogram`] | that of `first_edge x second_edge` |
 //! | [`cuboid`]: six parallelograms | outside |
-//! | [`Sphere`] | outside |
+//! | [`Sphere`], [`Cylinder`] | outside |
+//! | [`Disk`] | that of `first x second` |
+//! | [`Mesh`] | where the corners of its triangles run counter-clockwise |
+//!
+//! Each can be [`turned`](Flat::turned).
 //!
 //! Unlike materials, lights and cameras, shapes cannot be added from outside for now: see [`Primitive`].
 
 mod cuboid;
+mod cylinder;
+mod disk;
 mod flat;
+mod mesh;
 mod sphere;
 
 use glam::Vec3A;
@@ -18,7 +25,10 @@ use glam::Vec3A;
 use super::{Ray, Shading, Surface};
 
 pub use cuboid::cuboid;
+pub use cylinder::Cylinder;
+pub use disk::Disk;
 pub use flat::Flat;
+pub use mesh::Mesh;
 pub use sphere::Sphere;
 
 /// A surface that rays can hit and whose points can be drawn.
@@ -56,6 +66,10 @@ pub enum Primitive {
     Flat(Flat),
     /// A sphere.
     Sphere(Sphere),
+    /// A disk or an ellipse.
+    Disk(Disk),
+    /// The side of a cylinder.
+    Cylinder(Cylinder),
 }
 
 impl From<Flat> for Primitive {
@@ -70,11 +84,25 @@ impl From<Sphere> for Primitive {
     }
 }
 
+impl From<Disk> for Primitive {
+    fn from(disk: Disk) -> Self {
+        Self::Disk(disk)
+    }
+}
+
+impl From<Cylinder> for Primitive {
+    fn from(cylinder: Cylinder) -> Self {
+        Self::Cylinder(cylinder)
+    }
+}
+
 impl Shape for Primitive {
     fn bounds(&self) -> [Vec3A; 2] {
         match self {
             Self::Flat(flat) => flat.bounds(),
             Self::Sphere(sphere) => sphere.bounds(),
+            Self::Disk(disk) => disk.bounds(),
+            Self::Cylinder(cylinder) => cylinder.bounds(),
         }
     }
 
@@ -83,6 +111,8 @@ impl Shape for Primitive {
         match self {
             Self::Flat(flat) => flat.intersect(ray, limit),
             Self::Sphere(sphere) => sphere.intersect(ray, limit),
+            Self::Disk(disk) => disk.intersect(ray, limit),
+            Self::Cylinder(cylinder) => cylinder.intersect(ray, limit),
         }
     }
 
@@ -91,6 +121,8 @@ impl Shape for Primitive {
         match self {
             Self::Flat(flat) => flat.surface(ray, distance),
             Self::Sphere(sphere) => sphere.surface(ray, distance),
+            Self::Disk(disk) => disk.surface(ray, distance),
+            Self::Cylinder(cylinder) => cylinder.surface(ray, distance),
         }
     }
 
@@ -98,6 +130,8 @@ impl Shape for Primitive {
         match self {
             Self::Flat(flat) => flat.shading(surface),
             Self::Sphere(sphere) => sphere.shading(surface),
+            Self::Disk(disk) => disk.shading(surface),
+            Self::Cylinder(cylinder) => cylinder.shading(surface),
         }
     }
 
@@ -105,6 +139,8 @@ impl Shape for Primitive {
         match self {
             Self::Flat(flat) => flat.area(),
             Self::Sphere(sphere) => sphere.area(),
+            Self::Disk(disk) => disk.area(),
+            Self::Cylinder(cylinder) => cylinder.area(),
         }
     }
 
@@ -113,6 +149,8 @@ impl Shape for Primitive {
         match self {
             Self::Flat(flat) => flat.sample(from, u),
             Self::Sphere(sphere) => sphere.sample(from, u),
+            Self::Disk(disk) => disk.sample(from, u),
+            Self::Cylinder(cylinder) => cylinder.sample(from, u),
         }
     }
 
@@ -121,6 +159,8 @@ impl Shape for Primitive {
         match self {
             Self::Flat(flat) => flat.density(from, surface),
             Self::Sphere(sphere) => sphere.density(from, surface),
+            Self::Disk(disk) => disk.density(from, surface),
+            Self::Cylinder(cylinder) => cylinder.density(from, surface),
         }
     }
 }

@@ -28,7 +28,7 @@ pub(super) fn pays(count: usize, dimensions: usize) -> bool {
 /// sorted lists and running sums do.
 ///
 /// [^heinrich]: Heinrich, Stefan (1996). *Efficient Algorithms for Computing the L2-Discrepancy*. Mathematics of
-///     Computation 65. <https://doi.org/10.1090/S0025-5718-96-00756-8>
+///     Computation 65(216), 1621-1633.
 pub(super) fn sum(points: &Points<'_>) -> Compensated {
     let mut parts = vec![List::new(points)];
     let mut total = Compensated::ZERO;

@@ -23,7 +23,7 @@ pub(super) fn attained(points: &Points<'_>) -> AnchoredBox {
             };
             let stripe = usize::try_from(job / 2).expect("a stripe is in memory");
             let range = stripes[stripe].clone();
-            (slab.peak(range, points.count(), 1.0, boundary), boundary)
+            (slab.peak(range, boundary), boundary)
         },
         |(peak, boundary)| {
             if best.is_none_or(|(excess, ..)| peak.excess > excess) {

@@ -27,7 +27,7 @@ use crate::{Error, hash, reduce};
 ///
 /// # Work
 ///
-/// The budget is counted in steps, of which a core takes about 10^9 a second: by a count and not by a clock, so that
+/// The budget is counted in steps, of which a core takes between 2 10^8 and 10^9 a second: by a count and not by a clock, so that
 /// the same budget gives the same answer on every machine and for any number of threads. The default is
 /// 10^10 steps. Memory is `O(d n)`, and `O(n)` for the recursion.
 ///
@@ -50,7 +50,7 @@ use crate::{Error, hash, reduce};
 /// [^niederreiter]: Niederreiter, Harald (1992). *Random Number Generation and Quasi-Monte Carlo Methods*, theorem
 ///     2.6. <https://doi.org/10.1137/1.9781611970081>
 /// [^dobkin]: Dobkin, David; Eppstein, David; Mitchell, Don (1996). *Computing the Discrepancy with Applications to
-///     Supersampling Patterns*. <https://doi.org/10.1145/234535.234536>
+///     Supersampling Patterns*. ACM Transactions on Graphics 15(4), 354-376.
 /// [^gnewuch]: Gnewuch, Michael; Wahlström, Magnus; Winzen, Carola (2012). *A New Randomized Algorithm to Approximate
 ///     the Star Discrepancy Based on Threshold Accepting*. <https://doi.org/10.1137/110833865>
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,6 +91,8 @@ const LONG_WALK: u64 = 100_000;
 const SHORT_WALK: u64 = 4_096;
 /// Walks for each kind of box.
 const WALKS: u64 = 4;
+/// The gap between the bounds is halved, or multiplied by a root of that, up to this one.
+const SMALLEST_STEP: f64 = 0.8;
 
 impl Star {
     /// The same with another budget of work, in steps.
@@ -106,7 +108,8 @@ impl Star {
         self
     }
 
-    /// What the budget allows: the exact value, or else the closest bounds, or else a lower bound.
+    /// What the budget allows: the exact value, or else close bounds, or else, and always in more than 64 dimensions, a lower
+    /// bound.
     pub fn measure(&self, points: &Points<'_>) -> StarDiscrepancy {
         let mut state = match self.begin(points) {
             Ok(state) => state,
@@ -114,26 +117,28 @@ impl Star {
         };
         // Ever closer bounds, as long as the next ones may be had with what is left of the budget.
         let mut gap = 0.5 * (1.0 - state.lower());
-        let mut before = 0;
+        let (mut ratio, mut before) = (0.5_f64, None);
         loop {
             let start = state.work;
             if !state.narrow(gap, self.work) || gap == 0.0 {
                 break;
             }
-            let took = state.work - start;
-            let left = self.work.saturating_sub(state.work);
-            let next = took.saturating_mul((took / before.max(1)).max(2));
-            if next < left {
-                gap *= 0.5;
-            } else if took < left / 2 {
-                gap *= 0.8;
-            } else {
+            let took = (state.work - start) as f64;
+            let left = self.work.saturating_sub(state.work) as f64;
+            // As much dearer as the last ones were than those before them, and the less so the smaller the step.
+            let mut growth = before.map_or(4.0, |before: f64| (took / before).max(1.0 / ratio));
+            while took * growth > left && ratio < SMALLEST_STEP {
+                ratio = ratio.sqrt();
+                growth = growth.sqrt();
+            }
+            if took * growth > left {
                 break;
             }
+            gap *= ratio;
             if gap < state.lower() / 8.0 {
                 gap = 0.0;
             }
-            before = took;
+            before = Some(took);
         }
         if state.upper >= 1.0 && state.lower() < 1.0 {
             // That much is known of any points.
@@ -146,7 +151,7 @@ impl Star {
     ///
     /// # Errors
     ///
-    /// [`Error::Refused`] if the budget does not suffice.
+    /// [`Error::Refused`] if the budget does not suffice, and for more than 64 dimensions.
     pub fn exact(&self, points: &Points<'_>) -> Result<StarDiscrepancy, Error> {
         let mut state = match self.begin(points) {
             Ok(state) => state,
@@ -155,7 +160,7 @@ impl Star {
         if state.narrow(0.0, self.work) {
             Ok(state.conclude())
         } else {
-            Err(self.too_little("large enough for the exact star discrepancy"))
+            Err(self.too_little(points, "large enough for the exact star discrepancy"))
         }
     }
 
@@ -163,7 +168,7 @@ impl Star {
     ///
     /// # Errors
     ///
-    /// [`Error::Refused`] for a gap below zero or NaN, and if the budget does not suffice.
+    /// [`Error::Refused`] for a gap below zero or NaN, if the budget does not suffice, and for more than 64 dimensions.
     pub fn bounds(&self, points: &Points<'_>, gap: f64) -> Result<StarDiscrepancy, Error> {
         if !(gap >= 0.0) {
             return Err(Error::refused("gap between the bounds", "at least 0", gap));
@@ -175,7 +180,10 @@ impl Star {
         if state.narrow(gap, self.work) {
             Ok(state.conclude())
         } else {
-            Err(self.too_little("large enough for bounds of the star discrepancy so close"))
+            Err(self.too_little(
+                points,
+                "large enough for bounds of the star discrepancy so close",
+            ))
         }
     }
 
@@ -204,7 +212,14 @@ impl Star {
         state.conclude()
     }
 
-    fn too_little(&self, domain: &'static str) -> Error {
+    fn too_little(&self, points: &Points<'_>, domain: &'static str) -> Error {
+        if points.dimensions() > cells::DIMENSIONS {
+            return Error::refused(
+                "number of dimensions",
+                "at most 64 for more than a lower bound of the star discrepancy",
+                points.dimensions(),
+            );
+        }
         Error::refused(
             "budget of work",
             domain,

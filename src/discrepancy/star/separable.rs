@@ -9,7 +9,7 @@ use super::grid::Grid;
 /// Its lists are kept from one cell to the next.
 ///
 /// [^dobkin]: Dobkin, David; Eppstein, David; Mitchell, Don (1996). *Computing the Discrepancy with Applications to
-///     Supersampling Patterns*. <https://doi.org/10.1145/234535.234536>
+///     Supersampling Patterns*. ACM Transactions on Graphics 15(4), 354-376.
 #[derive(Default)]
 pub(super) struct Separable {
     /// The ranks of the undecided points, dimension by dimension.

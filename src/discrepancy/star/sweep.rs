@@ -3,8 +3,6 @@
 use super::Boundary;
 
 /// Points of the plane in order of their first coordinate, the second given as a rank among `heights`.
-///
-/// A list of this kind is also what a point list in three dimensions looks like below a level of the third.
 pub(super) struct Slab {
     /// The first coordinate of each point, ascending, and the rank of its second.
     pub(super) points: Vec<(f64, u32)>,
@@ -21,22 +19,15 @@ pub(super) struct Peak {
 }
 
 impl Slab {
-    /// The largest excess, of boxes whose volume is `volume` times the area of their face in the plane, over `count`
-    /// points of which those in the slab are some, and over the corners whose first coordinate is that of
-    /// one of the points `range`, or 1 if `range` reaches to the end.
+    /// The largest excess over the corners whose first coordinate is that of one of the points `range`, or 1 if `range`
+    /// reaches to the end.
     ///
-    /// The corner moves to the right. For every height `y` the excess times `count` is a straight line in the
-    /// position `x`: `x y volume count - inside` for an open box, `inside - x y volume count` for a closed one. A
-    /// point at height `h` that is passed changes `inside` for all `y` above `h`. So the largest excess is the highest
-    /// of a set of lines at the present position, a suffix of which moves by 1 at a time: a kinetic tree.
-    pub(super) fn peak(
-        &self,
-        range: core::ops::Range<usize>,
-        count: usize,
-        volume: f64,
-        boundary: Boundary,
-    ) -> Peak {
-        let scale = volume * count as f64;
+    /// The corner moves to the right. For every height `y` the excess times the count `n` of points is a straight line in the
+    /// position `x`: `x y n - inside` for an open box, `inside - x y n` for a closed one. A point at height `h` that is passed
+    /// changes `inside` for all `y` above `h`. So the largest excess is the highest of a set of lines at the present position, a
+    /// suffix of which moves by 1 at a time: a kinetic tree.
+    pub(super) fn peak(&self, range: core::ops::Range<usize>, boundary: Boundary) -> Peak {
+        let scale = self.points.len() as f64;
         let start = range.start;
         let mut inside = vec![0_u32; self.heights.len() + 1];
         for &(_, rank) in &self.points[..start] {

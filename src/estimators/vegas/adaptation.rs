@@ -91,16 +91,21 @@ pub(super) struct Adaptation<V> {
     pub(super) scale: V,
 }
 
-/// What one iteration has given.
+/// What one iteration has given so far.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Pass<V> {
     pub(super) strata: Vec<Stratum<V>>,
     /// The squares of the values in each bin, axis by axis.
     squares: Vec<Squares>,
     largest: V,
+    /// How many parts of the iteration are in it.
+    parts: u64,
 }
 
 /// Squares of values.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Squares {
     sum: f64,
     count: f64,
@@ -130,34 +135,69 @@ impl<V: Value> Adaptation<V> {
         self.counts.iter().sum()
     }
 
-    pub(super) fn pass<I: Integrand>(&mut self, integrand: &I, seed: u64) -> Result<Pass<V>, Error>
+    /// An iteration with no points yet. Its seed must stay the same until it is complete.
+    pub(super) fn begin<I: Integrand>(&mut self, integrand: &I, seed: u64) -> Pass<V>
     where
         I::Value: Value<Wide = V>,
     {
-        /// Parts of an iteration at most: each keeps its own sums for every bin.
-        const PARTS: u64 = 64;
+        if self.largest_is_zero() {
+            self.look(integrand, seed);
+        }
+        self.empty(self.counts.len())
+    }
+
+    /// The index of the first point of a part of the iteration.
+    fn first_of(&self, part: u64) -> u64 {
+        let (total, parts) = (self.points(), self.parts());
+        // Products that would not fit into a word do not fit into a day either.
+        total / parts * part + (total % parts).min(part)
+    }
+
+    /// The parts that an iteration is evaluated in, each with its own sums for every bin.
+    fn parts(&self) -> u64 {
+        const MOST: u64 = 64;
         const SHORTEST: u64 = 4096;
+        self.points().div_ceil(SHORTEST).clamp(1, MOST)
+    }
+
+    /// How many points of the iteration were evaluated.
+    pub(super) fn used(&self, pass: &Pass<V>) -> u64 {
+        self.first_of(pass.parts)
+    }
+
+    /// Goes on with an iteration until `count` of its points, or a few more, are evaluated, or all.
+    pub(super) fn go_on<I: Integrand>(
+        &self,
+        pass: &mut Pass<V>,
+        integrand: &I,
+        seed: u64,
+        count: u64,
+    ) -> Result<(), Error>
+    where
+        I::Value: Value<Wide = V>,
+    {
         let mut ends = Vec::with_capacity(self.counts.len());
         let mut total = 0;
         for count in &self.counts {
             total += count;
             ends.push(total);
         }
-        if self.largest_is_zero() {
-            self.look(integrand, seed);
-        }
-        let parts = total.div_ceil(SHORTEST).clamp(1, PARTS);
+        let begun = pass.parts;
+        let end = (begun..self.parts())
+            .find(|&part| self.first_of(part) >= count)
+            .unwrap_or(self.parts());
         let bins = self.map.table();
-        let mut pass = self.empty(self.counts.len());
         reduce::in_order(
-            parts,
-            |part| {
-                // Products that would not fit into a word do not fit into a day either.
-                let range = total / parts * part + (total % parts).min(part)
-                    ..total / parts * (part + 1) + (total % parts).min(part + 1);
+            end - begun,
+            |job| {
+                let part = begun + job;
+                let range = self.first_of(part)..self.first_of(part + 1);
                 self.part(integrand, seed, &bins, &ends, range)
             },
             |part: Part<V>| {
+                if let Some(offender) = part.offender {
+                    return Err(offender);
+                }
                 for (here, there) in pass.strata[part.first..].iter_mut().zip(&part.pass.strata) {
                     here.merge(there);
                 }
@@ -166,10 +206,10 @@ impl<V: Value> Adaptation<V> {
                     here.count += there.count;
                 }
                 pass.largest = pass.largest.zip(part.pass.largest, f64::max);
-                part.offender.map_or(Ok(()), Err)
+                pass.parts += 1;
+                Ok(())
             },
-        )?;
-        Ok(pass)
+        )
     }
 
     fn largest_is_zero(&self) -> bool {
@@ -197,6 +237,7 @@ impl<V: Value> Adaptation<V> {
             strata: vec![Stratum::EMPTY; strata],
             squares: vec![Squares::default(); self.map.bins() * self.map.dimensions()],
             largest: V::ZERO,
+            parts: 0,
         }
     }
 
@@ -224,8 +265,10 @@ impl<V: Value> Adaptation<V> {
         let points = Independent::new(seed);
         let width = self.map.dimensions();
         let dimensions = u32::try_from(width).expect("the number of axes is a u32");
-        let rows = (AHEAD / width).max(1);
-        let mut ahead = vec![0.0; rows * width];
+        // A map without axes needs rows all the same, if empty ones.
+        let stride = width.max(1);
+        let rows = (AHEAD / stride).max(1);
+        let mut ahead = vec![0.0; rows * stride];
         let mut filled = range.start..range.start;
         let mut hits = vec![Hit { bin: 0, x: 0.0 }; width];
         let mut values = Vec::new();
@@ -245,11 +288,11 @@ impl<V: Value> Adaptation<V> {
             }
             let end = ends[stratum].min(filled.end);
             let row = usize::try_from(index - filled.start).expect("it is in memory");
-            let prefixes = ahead[row * width..].chunks_exact(width);
+            let prefixes = ahead[row * stride..].chunks_exact(stride);
             values.clear();
             for (index, prefix) in (index..end).zip(prefixes) {
                 let mut u = Trained {
-                    inner: Cursor::with_prefix(&points, index, prefix),
+                    inner: Cursor::with_prefix(&points, index, &prefix[..width]),
                     bins,
                     number: self.map.bins(),
                     place: &place,

@@ -4,7 +4,7 @@ use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3A;
 
-use super::{Bsdf, Scattered, Scattering};
+use super::{Bsdf, Law, Scattered, Scattering};
 use crate::path::frame::{Frame, cosine_density, cosine_hemisphere, singles};
 use crate::path::{Surface, color};
 use crate::{Error, Sampler};
@@ -15,7 +15,7 @@ use crate::{Error, Sampler};
 /// Two coordinates draw a direction, with the density `cosine / pi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lambertian {
-    albedo: Vec3A,
+    pub(in crate::path) albedo: Vec3A,
 }
 
 impl Lambertian {
@@ -31,8 +31,63 @@ impl Lambertian {
     }
 }
 
+impl Lambertian {
+    /// For two directions on one side.
+    #[inline]
+    fn reflected(&self, cosine: f32) -> Scattering {
+        Scattering {
+            value: self.albedo * (FRAC_1_PI * cosine),
+            density: cosine_density(cosine),
+        }
+    }
+
+    /// A direction on the side of the third axis.
+    #[inline]
+    fn draw<S: Sampler>(&self, u: &mut S) -> Option<Scattered> {
+        let direction = cosine_hemisphere(singles(u.next_2d()));
+        (direction.z > 0.0).then(|| Scattered {
+            direction,
+            weight: self.albedo,
+            density: cosine_density(direction.z),
+            eta: 1.0,
+        })
+    }
+}
+
+impl Law for Lambertian {
+    type Place = ();
+
+    #[inline]
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    #[inline]
+    fn evaluate(&self, (): &(), out: Vec3A, into: Vec3A) -> Scattering {
+        if out.z * into.z <= 0.0 {
+            return Scattering::NONE;
+        }
+        self.reflected(into.z.abs())
+    }
+
+    #[inline]
+    fn sample<S: Sampler>(&self, (): &(), out: Vec3A, u: &mut S) -> Option<Scattered> {
+        let scattered = self.draw(u)?;
+        let mut direction = scattered.direction;
+        direction.z = direction.z.copysign(out.z);
+        Some(Scattered {
+            direction,
+            ..scattered
+        })
+    }
+}
+
 impl Bsdf for Lambertian {
     type Detail = ();
+
+    fn as_lambertian(&self) -> Option<&Self> {
+        Some(self)
+    }
 
     #[inline]
     fn is_delta(&self) -> bool {
@@ -45,21 +100,16 @@ impl Bsdf for Lambertian {
         if cosine * at.normal.dot(out) <= 0.0 {
             return Scattering::NONE;
         }
-        Scattering {
-            value: self.albedo * (FRAC_1_PI * cosine.abs()),
-            density: cosine_density(cosine.abs()),
-        }
+        self.reflected(cosine.abs())
     }
 
     #[inline]
     fn sample<S: Sampler>(&self, at: &Surface, out: Vec3A, u: &mut S) -> Option<Scattered> {
-        let local = cosine_hemisphere(singles(u.next_2d()));
+        let scattered = self.draw(u)?;
         let normal = at.normal * 1.0_f32.copysign(at.normal.dot(out));
-        (local.z > 0.0).then(|| Scattered {
-            direction: Frame::around(normal).out(local),
-            weight: self.albedo,
-            density: cosine_density(local.z),
-            eta: 1.0,
+        Some(Scattered {
+            direction: Frame::around(normal).out(scattered.direction),
+            ..scattered
         })
     }
 }

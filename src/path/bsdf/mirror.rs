@@ -2,7 +2,8 @@
 
 use glam::Vec3A;
 
-use super::{Bsdf, Scattered, Scattering};
+use super::law::mirrored;
+use super::{Bsdf, Law, Scattered, Scattering};
 use crate::path::{Surface, color};
 use crate::{Error, Sampler};
 
@@ -33,6 +34,25 @@ pub(super) fn reflect(normal: Vec3A, out: Vec3A) -> Vec3A {
     (normal * (2.0 * normal.dot(out)) - out).normalize()
 }
 
+impl Law for Mirror {
+    type Place = ();
+
+    #[inline]
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn evaluate(&self, (): &(), _: Vec3A, _: Vec3A) -> Scattering {
+        Scattering::NONE
+    }
+
+    #[inline]
+    fn sample<S: Sampler>(&self, (): &(), out: Vec3A, _: &mut S) -> Option<Scattered> {
+        (out.z > 0.0).then(|| Scattered::single(mirrored(out), self.reflectance))
+    }
+}
+
 impl Bsdf for Mirror {
     type Detail = ();
 
@@ -48,11 +68,7 @@ impl Bsdf for Mirror {
 
     #[inline]
     fn sample<S: Sampler>(&self, at: &Surface, out: Vec3A, _: &mut S) -> Option<Scattered> {
-        (at.normal.dot(out) > 0.0).then(|| Scattered {
-            direction: reflect(at.normal, out),
-            weight: self.reflectance,
-            density: f32::INFINITY,
-            eta: 1.0,
-        })
+        (at.normal.dot(out) > 0.0)
+            .then(|| Scattered::single(reflect(at.normal, out), self.reflectance))
     }
 }

@@ -1,18 +1,22 @@
 //! A sweep over few shapes, eight flat ones at a time.
 
 use super::Found;
+use super::kind::{Kind, divides};
 use crate::path::ray::Ray;
-use crate::path::shape::{Flat, Primitive, Shape, Sphere};
+use crate::path::shape::{Flat, Primitive, Shape};
 
 /// The shapes, laid out for vector code.
 ///
 /// The arithmetic is plain `f32`, lane by lane: vectors of any width, and none, give the same bits.
 #[derive(Debug)]
-pub(super) struct Sweep {
+pub(in crate::path) struct Sweep {
     flats: Vec<Flats>,
-    /// Which shape each of the flats is.
-    flat_shapes: Vec<usize>,
-    spheres: Vec<(usize, Sphere)>,
+    /// Those of them that can be between two points of the scene, if the shapes are all there is.
+    dividing: Vec<Flats>,
+    /// Which shape each of the flats is: those of simple equations come first.
+    pub(in crate::path) flat_shapes: Vec<usize>,
+    /// The shapes that are not flat, and which they are.
+    others: Vec<(usize, Primitive)>,
     #[cfg(feature = "simd")]
     arch: pulp::Arch,
 }
@@ -33,6 +37,21 @@ struct Flats {
 }
 
 impl Flats {
+    /// Blocks of the given shapes in their order.
+    fn blocks<'a>(shapes: impl Iterator<Item = &'a Flat>) -> Vec<Self> {
+        let mut blocks = Vec::new();
+        for (place, flat) in shapes.enumerate() {
+            let lane = place % LANES;
+            if lane == 0 {
+                blocks.push(Self::default());
+            }
+            if let Some(block) = blocks.last_mut() {
+                block.set(lane, flat);
+            }
+        }
+        blocks
+    }
+
     fn set(&mut self, lane: usize, flat: &Flat) {
         for axis in 0..3 {
             self.corner[axis][lane] = flat.corner[axis];
@@ -58,7 +77,7 @@ impl Flats {
             let dot = |a: [f32; 3], b: &[Lanes; 3]| {
                 a[0] * b[0][lane] + a[1] * b[1][lane] + a[2] * b[2][lane]
             };
-            let distance = dot(offset, &self.normal) / dot(direction, &self.normal);
+            let distance = dot(offset, &self.normal) * dot(direction, &self.normal).recip();
             let inside = [
                 direction[0] * distance - offset[0],
                 direction[1] * distance - offset[1],
@@ -87,26 +106,21 @@ fn slot(block: f32, lane: usize) -> usize {
 
 impl Sweep {
     pub(super) fn new(shapes: &[Primitive]) -> Self {
-        let (mut flats, mut flat_shapes, mut spheres) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut flats, mut others) = (Vec::new(), Vec::new());
         for (index, shape) in shapes.iter().enumerate() {
             match shape {
-                Primitive::Flat(flat) => {
-                    let lane = flat_shapes.len() % LANES;
-                    if lane == 0 {
-                        flats.push(Flats::default());
-                    }
-                    if let Some(block) = flats.last_mut() {
-                        block.set(lane, flat);
-                    }
-                    flat_shapes.push(index);
-                }
-                Primitive::Sphere(sphere) => spheres.push((index, *sphere)),
+                Primitive::Flat(flat) => flats.push((index, flat)),
+                other => others.push((index, *other)),
             }
         }
+        flats.sort_by_key(|(_, flat)| Kind::of(flat));
+        let in_order = flats.iter().map(|&(_, flat)| flat);
+        let dividing = in_order.clone().filter(|flat| divides(flat, shapes));
         Self {
-            flats,
-            flat_shapes,
-            spheres,
+            flats: Flats::blocks(in_order.clone()),
+            dividing: Flats::blocks(dividing),
+            flat_shapes: flats.iter().map(|&(index, _)| index).collect(),
+            others,
             #[cfg(feature = "simd")]
             arch: pulp::Arch::new(),
         }
@@ -120,8 +134,8 @@ impl Sweep {
         let flat = self.nearest_flat(ray);
         let mut limit = flat.map_or(f32::INFINITY, |found| found.distance);
         let mut nearest = flat;
-        for &(shape, sphere) in &self.spheres {
-            if let Some(distance) = sphere.intersect(ray, limit) {
+        for &(shape, other) in &self.others {
+            if let Some(distance) = other.intersect(ray, limit) {
                 limit = distance;
                 nearest = Some(Found { shape, distance });
             }
@@ -131,12 +145,23 @@ impl Sweep {
 
     #[inline]
     pub(super) fn occluded(&self, ray: &Ray, limit: f32) -> bool {
+        self.any(&self.flats, ray, limit)
+    }
+
+    /// The same for a ray from one point of the scene to another.
+    #[inline]
+    pub(super) fn divided(&self, ray: &Ray, limit: f32) -> bool {
+        self.any(&self.dividing, ray, limit)
+    }
+
+    #[inline]
+    fn any(&self, flats: &[Flats], ray: &Ray, limit: f32) -> bool {
         #[cfg(feature = "simd")]
-        let flat = self.arch.dispatch(Occluded(self, ray, limit));
+        let flat = self.arch.dispatch(Occluded(flats, ray, limit));
         #[cfg(not(feature = "simd"))]
-        let flat = self.flat_occludes(ray, limit);
-        let mut spheres = self.spheres.iter();
-        flat || spheres.any(|(_, sphere)| sphere.intersect(ray, limit).is_some())
+        let flat = any_occludes(flats, ray, limit);
+        let mut others = self.others.iter();
+        flat || others.any(|(_, other)| other.intersect(ray, limit).is_some())
     }
 
     /// The nearest flat shape; of several at the same distance the first.
@@ -175,23 +200,23 @@ impl Sweep {
                 distance,
             })
     }
+}
 
-    #[inline(always)]
-    fn flat_occludes(&self, ray: &Ray, limit: f32) -> bool {
-        let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-        // A loop, not `any`: its closure would not be compiled for the machine at hand.
-        for flats in &self.flats {
-            let distances = flats.distances(origin, direction, limit);
-            let mut met = false;
-            for distance in distances {
-                met |= distance < f32::INFINITY;
-            }
-            if met {
-                return true;
-            }
+#[inline(always)]
+fn any_occludes(blocks: &[Flats], ray: &Ray, limit: f32) -> bool {
+    let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
+    // A loop, not `any`: its closure would not be compiled for the machine at hand.
+    for flats in blocks {
+        let distances = flats.distances(origin, direction, limit);
+        let mut met = false;
+        for distance in distances {
+            met |= distance < f32::INFINITY;
         }
-        false
+        if met {
+            return true;
+        }
     }
+    false
 }
 
 /// [`Sweep::nearest_flat`] in the vector code of the machine at hand.
@@ -208,9 +233,9 @@ impl pulp::NullaryFnOnce for Nearest<'_> {
     }
 }
 
-/// [`Sweep::flat_occludes`] in the vector code of the machine at hand.
+/// [`any_occludes`] in the vector code of the machine at hand.
 #[cfg(feature = "simd")]
-struct Occluded<'a>(&'a Sweep, &'a Ray, f32);
+struct Occluded<'a>(&'a [Flats], &'a Ray, f32);
 
 #[cfg(feature = "simd")]
 impl pulp::NullaryFnOnce for Occluded<'_> {
@@ -218,6 +243,6 @@ impl pulp::NullaryFnOnce for Occluded<'_> {
 
     #[inline(always)]
     fn call(self) -> bool {
-        self.0.flat_occludes(self.1, self.2)
+        any_occludes(self.0, self.1, self.2)
     }
 }

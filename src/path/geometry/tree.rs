@@ -9,9 +9,9 @@ use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::builder::build_cwbvh;
 use obvhs::ray::{Ray as TreeRay, RayHit};
 
-use super::Found;
+use super::{Found, around};
 use crate::path::ray::{Ray, gamma};
-use crate::path::shape::{Primitive, Shape};
+use crate::path::shape::Shape;
 
 /// An eight-way tree of boxes around the shapes.
 ///
@@ -28,16 +28,27 @@ const EXTENT: f32 = 40.0;
 
 impl Tree {
     /// The tree of at least one shape.
-    pub(super) fn new(shapes: &[Primitive]) -> Self {
-        let extent = shapes
-            .iter()
-            .flat_map(Shape::bounds)
-            .fold(f32::MIN_POSITIVE, |extent, corner| {
-                extent.max(corner.abs().max_element())
-            });
+    pub(super) fn new<S: Shape>(shapes: &[S]) -> Self {
+        let boxes: Vec<_> = shapes.iter().map(Shape::bounds).collect();
+        Self::around(&boxes)
+    }
+
+    /// The tree of at least one box, given by two corners.
+    pub(super) fn around(boxes: &[[Vec3A; 2]]) -> Self {
+        let [low, high] = around(boxes.iter().copied());
+        let extent = low.abs().max(high.abs()).max_element();
+        let extent = extent.max(f32::MIN_POSITIVE);
         let scale = (EXTENT - extent.log2().round()).clamp(-120.0, 120.0).exp2();
-        let boxes: Vec<Aabb> = shapes.iter().map(|shape| bounds(shape, scale)).collect();
-        let parameters = BvhBuildParams::slow_build();
+        let boxes: Vec<Aabb> = boxes
+            .iter()
+            .map(|&corners| scaled(corners, scale))
+            .collect();
+        // A slow build is for those who render long; a million boxes would take longer than many pictures.
+        let parameters = if boxes.len() < SLOW {
+            BvhBuildParams::slow_build()
+        } else {
+            BvhBuildParams::fast_build()
+        };
         Self {
             tree: build_cwbvh(&boxes, parameters, &mut Duration::default()),
             scale,
@@ -45,39 +56,82 @@ impl Tree {
     }
 
     #[inline]
-    pub(super) fn nearest(&self, shapes: &[Primitive], ray: &Ray) -> Option<Found> {
-        let mut hit = RayHit::none();
-        let whole = TreeRay::new_inf(ray.origin * self.scale, ray.direction);
-        let found = self.tree.ray_traverse(whole, &mut hit, |so_far, slot| {
-            self.meet(shapes, ray, so_far.tmax, slot)
-        });
-        found.then(|| Found {
-            shape: self.tree.primitive_indices[hit.primitive_id as usize] as usize,
-            distance: hit.t / self.scale,
+    pub(super) fn nearest<S: Shape>(&self, shapes: &[S], ray: &Ray, limit: f32) -> Option<Found> {
+        self.search(ray, limit, |shape, limit| {
+            shapes[shape].intersect(ray, limit)
         })
     }
 
     #[inline]
-    pub(super) fn occluded(&self, shapes: &[Primitive], ray: &Ray, limit: f32) -> bool {
-        let limit = limit * self.scale;
-        let segment = TreeRay::new(ray.origin * self.scale, ray.direction, 0.0, limit);
-        !self
-            .tree
-            .ray_traverse_miss(segment, |_, slot| self.meet(shapes, ray, limit, slot))
+    pub(super) fn occluded<S: Shape>(&self, shapes: &[S], ray: &Ray, limit: f32) -> bool {
+        self.meets(ray, limit, |shape, limit| {
+            shapes[shape].intersect(ray, limit).is_some()
+        })
     }
 
-    /// The scaled distance of the shape in a slot of the tree; infinite if it is not met within `limit`.
+    /// The nearest of what is in the boxes: `meet` returns the distance of one of them if it is met before a limit.
     #[inline]
-    fn meet(&self, shapes: &[Primitive], ray: &Ray, limit: f32, slot: usize) -> f32 {
-        shapes[self.tree.primitive_indices[slot] as usize]
-            .intersect(ray, limit / self.scale)
-            .map_or(f32::INFINITY, |distance| distance * self.scale)
+    pub(super) fn search(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        mut meet: impl FnMut(usize, f32) -> Option<f32>,
+    ) -> Option<Found> {
+        let mut hit = RayHit::none();
+        let whole = self.ray(ray, limit);
+        let found = self.tree.ray_traverse(whole, &mut hit, |so_far, slot| {
+            meet(self.shape(slot), so_far.tmax / self.scale)
+                .map_or(f32::INFINITY, |distance| distance * self.scale)
+        });
+        found.then(|| Found {
+            shape: self.shape(hit.primitive_id as usize),
+            distance: hit.t / self.scale,
+        })
+    }
+
+    /// Whether any of what is in the boxes is met before `limit`.
+    #[inline]
+    pub(super) fn meets(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        mut meet: impl FnMut(usize, f32) -> bool,
+    ) -> bool {
+        let segment = self.ray(ray, limit);
+        !self.tree.ray_traverse_miss(segment, |_, slot| {
+            if meet(self.shape(slot), limit) {
+                0.0
+            } else {
+                f32::INFINITY
+            }
+        })
+    }
+
+    /// The ray as the tree takes it: scaled, and without the zeros of negative sign, whose octant the tree takes for that of
+    /// the positive ones but whose inverses it does not.
+    #[inline]
+    fn ray(&self, ray: &Ray, limit: f32) -> TreeRay {
+        TreeRay::new(
+            ray.origin * self.scale,
+            ray.direction + Vec3A::ZERO,
+            0.0,
+            limit * self.scale,
+        )
+    }
+
+    /// What is in a slot of the tree.
+    #[inline]
+    fn shape(&self, slot: usize) -> usize {
+        self.tree.primitive_indices[slot] as usize
     }
 }
 
-/// A box around the scaled shape, widened by what rounding does to a ray's way to it.
-fn bounds(shape: &Primitive, scale: f32) -> Aabb {
-    let [low, high] = shape.bounds().map(|corner| corner * scale);
+/// From so many boxes on, the tree is built fast.
+const SLOW: usize = 100_000;
+
+/// A scaled box, widened by what rounding does to a ray's way to it.
+fn scaled(corners: [Vec3A; 2], scale: f32) -> Aabb {
+    let [low, high] = corners.map(|corner| corner * scale);
     let margin = gamma(8) * low.abs().max(high.abs()).max_element();
     Aabb::new(low - Vec3A::splat(margin), high + Vec3A::splat(margin))
 }

@@ -5,10 +5,10 @@ use glam::Vec3A;
 use super::{Emission, Emitter, Illumination, Light};
 use crate::path::frame::singles;
 use crate::path::shape::Shape;
-use crate::path::{Segment, Shading, Surface};
+use crate::path::{Segment, Surface};
 use crate::{Error, Sampler};
 
-/// Shapes that emit light from their outer sides.
+/// Shapes that emit light from their outer sides; none at all is a number too.
 ///
 /// Two coordinates draw a point, however many shapes there are: the first also chooses the shape, in
 /// proportion to its power, and what is left of it is a coordinate again.
@@ -35,12 +35,34 @@ impl Choice {
 }
 
 impl AreaLights {
+    /// No lights.
+    pub(super) const NONE: Self = Self {
+        emitters: Vec::new(),
+        choices: Vec::new(),
+    };
+
+    /// The probability with which an emitter is chosen.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn probability(&self, emitter: u32) -> f32 {
+        self.choices[emitter as usize].times(1.0)
+    }
+
+    /// What an emitter emits, if it is the same everywhere.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn radiance(&self, emitter: u32) -> Option<Vec3A> {
+        let emitter = &self.emitters[emitter as usize];
+        emitter.picture.is_none().then_some(emitter.radiance)
+    }
+
     /// Which emitter the coordinate chooses, and what is left of the coordinate.
     #[inline]
-    fn choose(&self, u: f64) -> (usize, f64) {
+    pub(in crate::path) fn choose(&self, u: f64) -> (usize, f64) {
         let [_, rest @ ..] = &self.choices[..] else {
             return (0, u);
         };
+        if rest.is_empty() {
+            return (0, u);
+        }
         let chosen = rest.partition_point(|choice| choice.before <= u);
         let Choice {
             probability,
@@ -52,12 +74,8 @@ impl AreaLights {
 
 impl Light for AreaLights {
     fn new(emitters: Vec<Emitter>) -> Result<Self, Error> {
-        let power = |emitter: &Emitter| {
-            let radiance = emitter.radiance.as_dvec3();
-            f64::from(emitter.shape.area()) * radiance.element_sum()
-        };
-        let total: f64 = emitters.iter().map(power).sum();
-        if !(total > 0.0 && total.is_finite()) {
+        let total: f64 = emitters.iter().map(Emitter::power).sum();
+        if !(emitters.is_empty() || total > 0.0 && total.is_finite()) {
             return Err(Error::refused(
                 "power of all lights together",
                 "positive and finite",
@@ -67,7 +85,7 @@ impl Light for AreaLights {
         let choices = emitters
             .iter()
             .scan(0.0, |sum, emitter| {
-                let (before, probability) = (*sum, power(emitter) / total);
+                let (before, probability) = (*sum, emitter.power() / total);
                 *sum += probability;
                 Some(Choice {
                     probability,
@@ -78,37 +96,38 @@ impl Light for AreaLights {
         Ok(Self { emitters, choices })
     }
 
+    fn as_area_lights(&self) -> Option<&Self> {
+        Some(self)
+    }
+
     #[inline]
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
         let [a, b] = u.next_2d();
         let (chosen, a) = self.choose(a);
-        let Emitter { shape, radiance } = &self.emitters[chosen];
-        let there = shape.sample(from.point, singles([a, b]));
-        let density = self.choices[chosen].times(shape.density(from.point, &there));
+        let emitter = self.emitters.get(chosen)?;
+        let there = emitter.shape.sample(from.point, singles([a, b]));
+        let density = self.choices[chosen].times(emitter.shape.density(from.point, &there));
         let lit = there.normal.dot(from.point - there.point) > 0.0;
         if !(lit && density > 0.0 && density < f32::MAX) {
             return None;
         }
         Some(Illumination {
             way: Segment::between(from, &there)?,
-            weight: *radiance / density,
+            weight: emitter.radiance_at(&there) * density.recip(),
             density,
         })
     }
 
     #[inline]
-    fn emitted(
-        &self,
-        emitter: u32,
-        from: Vec3A,
-        surface: &Surface,
-        _: impl FnOnce() -> Shading,
-    ) -> Emission {
-        let Emitter { shape, radiance } = &self.emitters[emitter as usize];
-        let lit = surface.normal.dot(from - surface.point) > 0.0;
+    fn emitted(&self, emitter: u32, from: Vec3A, surface: &Surface) -> Emission {
+        let choice = self.choices[emitter as usize];
+        let emitter = &self.emitters[emitter as usize];
+        if surface.normal.dot(from - surface.point) <= 0.0 {
+            return Emission::NONE;
+        }
         Emission {
-            radiance: if lit { *radiance } else { Vec3A::ZERO },
-            density: self.choices[emitter as usize].times(shape.density(from, surface)),
+            radiance: emitter.radiance_at(surface),
+            density: choice.times(emitter.shape.density(from, surface)),
         }
     }
 }

@@ -13,6 +13,12 @@ pub trait Environment: Sync {
     /// direction.
     fn emitted(&self, direction: Vec3A) -> Emission;
 
+    /// The radiance, if it is the same from everywhere and [`sample`](Self::sample) draws nothing: a scene with such an
+    /// environment may be traced many paths at once. `None` unless implemented.
+    fn constant(&self) -> Option<Vec3A> {
+        None
+    }
+
     /// A way to the light, drawn from the coordinates of `u` so as to light the surface `from` well. Draws nothing, and
     /// no coordinate, unless it is implemented: the light is then met by the directions that surfaces draw.
     #[inline]
@@ -27,6 +33,10 @@ pub trait Environment: Sync {
 pub struct NoEnvironment;
 
 impl Environment for NoEnvironment {
+    fn constant(&self) -> Option<Vec3A> {
+        Some(Vec3A::ZERO)
+    }
+
     #[inline]
     fn emitted(&self, _: Vec3A) -> Emission {
         Emission::NONE
@@ -55,6 +65,10 @@ impl Constant {
 }
 
 impl Environment for Constant {
+    fn constant(&self) -> Option<Vec3A> {
+        Some(self.radiance)
+    }
+
     #[inline]
     fn emitted(&self, _: Vec3A) -> Emission {
         Emission {

@@ -1,6 +1,6 @@
 //! Triangles and parallelograms.
 
-use glam::{Vec2, Vec3A};
+use glam::{Vec2, Vec2Swizzles, Vec3A};
 
 use super::{Shape, density_of_area};
 use crate::Error;
@@ -27,12 +27,14 @@ pub struct Flat {
     /// 1 for a triangle, 0 for a parallelogram: with it `s + slant * t <= 1` and `t + slant * s <= 1` hold
     /// inside either.
     pub(in crate::path) slant: f32,
-    first_edge: Vec3A,
-    second_edge: Vec3A,
+    pub(in crate::path) first_edge: Vec3A,
+    pub(in crate::path) second_edge: Vec3A,
     /// How far inside the edges points are kept: so far that a ray from there cannot miss a neighbour at the edge.
-    inset: [f32; 2],
-    margin: f32,
-    area: f32,
+    pub(in crate::path) inset: [f32; 2],
+    pub(in crate::path) margin: f32,
+    pub(in crate::path) area: f32,
+    /// Whether the edges have changed places, which texture coordinates do not follow.
+    turned: bool,
 }
 
 impl Flat {
@@ -107,6 +109,7 @@ impl Flat {
             inset,
             margin,
             area: single(area),
+            turned: false,
         })
     }
 
@@ -121,7 +124,7 @@ impl Flat {
         }
     }
 
-    /// The same points with the outer side on the other side.
+    /// The same points with the outer side on the other side, and the same texture coordinates.
     #[must_use]
     pub fn turned(self) -> Self {
         Self {
@@ -132,6 +135,7 @@ impl Flat {
             second_dual: self.first_dual,
             slack: [self.slack[1], self.slack[0]],
             inset: [self.inset[1], self.inset[0]],
+            turned: !self.turned,
             ..self
         }
     }
@@ -164,7 +168,7 @@ impl Shape for Flat {
     #[inline]
     fn intersect(&self, ray: &Ray, limit: f32) -> Option<f32> {
         let offset = self.corner - ray.origin;
-        let distance = offset.dot(self.normal) / ray.direction.dot(self.normal);
+        let distance = offset.dot(self.normal) * ray.direction.dot(self.normal).recip();
         let inside = ray.direction * distance - offset;
         let s = inside.dot(self.first_dual);
         let t = inside.dot(self.second_dual);
@@ -192,11 +196,17 @@ impl Shape for Flat {
     #[inline]
     fn shading(&self, surface: &Surface) -> Shading {
         let inside = surface.point - self.corner;
+        let uv = Vec2::new(inside.dot(self.first_dual), inside.dot(self.second_dual));
+        let (uv, du, dv) = if self.turned {
+            (uv.yx(), self.second_edge, self.first_edge)
+        } else {
+            (uv, self.first_edge, self.second_edge)
+        };
         Shading {
-            uv: Vec2::new(inside.dot(self.first_dual), inside.dot(self.second_dual)),
+            uv,
             normal: self.normal,
-            du: self.first_edge,
-            dv: self.second_edge,
+            du,
+            dv,
         }
     }
 

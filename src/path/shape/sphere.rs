@@ -16,6 +16,10 @@ pub struct Sphere {
     center: Vec3A,
     radius: f32,
     squared_radius: f32,
+    /// The x and the z axis of its texture coordinates.
+    axes: [Vec3A; 2],
+    /// 1, or -1 if the outer side is inside.
+    side: f32,
 }
 
 impl Sphere {
@@ -46,7 +50,40 @@ impl Sphere {
             center: center_,
             radius,
             squared_radius,
+            axes: [Vec3A::X, Vec3A::Z],
+            side: 1.0,
         })
+    }
+
+    /// The same with texture coordinates that are turned: around `pole` in place of the z axis, from `start` in place of the x
+    /// axis.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for two vectors that are not finite or that have one direction.
+    pub fn with_axes(self, start: Vec3A, pole: Vec3A) -> Result<Self, Error> {
+        let (start_64, pole_64) = (start.as_dvec3(), pole.as_dvec3().normalize());
+        let across = (start_64 - pole_64 * pole_64.dot(start_64)).normalize();
+        if !across.is_finite() {
+            return Err(Error::refused(
+                "axes of a sphere",
+                "finite, of two directions",
+                format_args!("{start} and {pole}"),
+            ));
+        }
+        Ok(Self {
+            axes: [across.as_vec3a(), pole_64.as_vec3a()],
+            ..self
+        })
+    }
+
+    /// The same points with the outer side inside, and the same texture coordinates.
+    #[must_use]
+    pub fn turned(self) -> Self {
+        Self {
+            side: -self.side,
+            ..self
+        }
     }
 
     /// The centre.
@@ -59,12 +96,21 @@ impl Sphere {
         self.radius
     }
 
+    /// Whether a point at this squared distance from the centre is inside, or on the sphere up to rounding: there
+    /// is no cone that the sphere fills.
     #[inline]
-    fn toward(&self, normal: Vec3A) -> Surface {
+    fn holds(&self, squared: f32) -> bool {
+        let margin = gamma(8) * (self.center.abs().element_sum() + 2.0 * self.radius);
+        let reach = self.radius + margin;
+        squared <= reach * reach
+    }
+
+    #[inline]
+    fn toward(&self, outward: Vec3A) -> Surface {
         Surface {
-            point: self.center + normal * self.radius,
-            normal,
-            margin: gamma(8) * (normal.abs().dot(self.center.abs()) + 2.0 * self.radius),
+            point: self.center + outward * self.radius,
+            normal: outward * self.side,
+            margin: gamma(8) * (outward.abs().dot(self.center.abs()) + 2.0 * self.radius),
             detail: (),
         }
     }
@@ -100,24 +146,31 @@ impl Shape for Sphere {
         self.toward((ray.at(distance) - self.center).normalize())
     }
 
-    /// The texture coordinates are the azimuth around the z axis and the angle from it, over `2 pi` and `pi`.
+    /// The texture coordinates are the azimuth around the z axis and the angle from it, over `2 pi` and `pi`, unless
+    /// [turned](Sphere::with_axes).
     fn shading(&self, surface: &Surface) -> Shading {
-        let normal = surface.normal;
-        let azimuth = normal.y.atan2(normal.x);
-        let radius = normal.truncate().length();
-        let angle = radius.atan2(normal.z);
-        // The azimuth of a pole is that of the x axis.
+        let outward = surface.normal * self.side;
+        let [first, pole] = self.axes;
+        let second = pole.cross(first);
+        let [x, y, z] = [first, second, pole].map(|axis| axis.dot(outward));
+        let radius = x.hypot(y);
+        // The azimuth of a pole is that of the first axis.
         let [cosine, sine] = if radius > 0.0 {
-            [normal.x / radius, normal.y / radius]
+            [x / radius, y / radius]
         } else {
             [1.0, 0.0]
         };
-        let turns = azimuth / TAU;
+        let turns = y.atan2(x) / TAU;
+        let around = second * cosine - first * sine;
+        let away = first * cosine + second * sine;
         Shading {
-            uv: Vec2::new(if turns < 0.0 { turns + 1.0 } else { turns }, angle / PI),
-            normal,
-            du: Vec3A::new(-sine, cosine, 0.0) * (TAU * radius * self.radius),
-            dv: Vec3A::new(normal.z * cosine, normal.z * sine, -radius) * (PI * self.radius),
+            uv: Vec2::new(
+                if turns < 0.0 { turns + 1.0 } else { turns },
+                radius.atan2(z) / PI,
+            ),
+            normal: surface.normal,
+            du: around * (TAU * radius * self.radius),
+            dv: (away * z - pole * radius) * (PI * self.radius),
         }
     }
 
@@ -125,7 +178,7 @@ impl Shape for Sphere {
         4.0 * PI * self.squared_radius
     }
 
-    /// From outside uniform in the cone that the sphere fills,[^shirley] from inside uniform on the area.
+    /// From outside uniform in the cone that the sphere fills,[^shirley] from inside and on it uniform on the area.
     ///
     /// [^shirley]: Shirley, Peter; Wang, Changyaw; Zimmerman, Kurt (1996). *Monte Carlo Techniques for Direct
     ///     Lighting Calculations*. <https://doi.org/10.1145/226150.226151>
@@ -134,7 +187,7 @@ impl Shape for Sphere {
         let offset = from - self.center;
         let squared = offset.length_squared();
         let [cosine, sine] = turn(b);
-        if squared <= self.squared_radius {
+        if self.holds(squared) {
             let z = 1.0 - 2.0 * a;
             let r = (1.0 - z * z).max(0.0).sqrt();
             return self.toward(Vec3A::new(r * cosine, r * sine, z));
@@ -153,7 +206,7 @@ impl Shape for Sphere {
     #[inline]
     fn density(&self, from: Vec3A, surface: &Surface) -> f32 {
         let squared = (from - self.center).length_squared();
-        if squared <= self.squared_radius {
+        if self.holds(squared) {
             return density_of_area(from, surface, self.area());
         }
         0.5 / (PI * one_minus_cosine(self.squared_radius / squared))

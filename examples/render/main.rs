@@ -1,0 +1,207 @@
+//! Renders scene files of Mitsuba 3.
+
+mod adaptive;
+mod checkpoint;
+mod output;
+mod plan;
+mod points;
+mod progress;
+mod render;
+mod state;
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use clap::Parser;
+use estimand::mitsuba::{self, Instance};
+use estimand::path::Image;
+
+use checkpoint::Checkpoint;
+use output::{Report, Work};
+use plan::Plan;
+use points::Points;
+use render::Job;
+
+/// Renders a scene file of Mitsuba 3.
+///
+/// Without --spp, --time or --noise it takes the number of samples that the file asks for. Ctrl-C stops early, writes what is
+/// there, and exits with 130.
+#[derive(Parser)]
+struct Arguments {
+    /// The scene, an XML file
+    scene: PathBuf,
+    /// A value for a parameter of the scene
+    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = parameter)]
+    define: Vec<(String, String)>,
+    /// Samples per pixel
+    #[arg(long, value_name = "N", group = "length", value_parser = clap::value_parser!(u64).range(1..))]
+    spp: Option<u64>,
+    /// Stops after this time of rendering
+    #[arg(long, value_name = "SECONDS", group = "length", value_parser = positive)]
+    time: Option<f64>,
+    /// Stops when the root-mean-square error of the pixels, as it is estimated, is below this part of the mean
+    #[arg(long, value_name = "RELATIVE_ERROR", group = "length", value_parser = positive)]
+    noise: Option<f64>,
+    /// The points of the pixels
+    #[arg(long, value_enum, value_name = "SET", default_value_t = Points::BlueNoise)]
+    points: Points,
+    /// Into how many independent renders the samples of --spp are split; their spread gives the error.
+    /// The default is 2, and 16 with --std-error
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    replicates: Option<u64>,
+    /// Selects the randomisation of the points
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Threads; 0 for as many as there are processors
+    #[arg(long, value_name = "T", default_value_t = 0)]
+    threads: usize,
+    /// Where the picture goes, as OpenEXR or PNG by the name's ending; may be given more than once
+    #[arg(long, value_name = "FILE.exr|.png")]
+    out: Vec<PathBuf>,
+    /// Where the standard errors of the pixels go
+    #[arg(long, value_name = "FILE.exr")]
+    std_error: Option<PathBuf>,
+    /// A picture to compare with
+    #[arg(long, value_name = "FILE.exr")]
+    reference: Option<PathBuf>,
+    /// Takes more samples where the picture varies more: independent ones, --spp of them in the mean. The picture is rendered at
+    /// once: Ctrl-C ends it with nothing written
+    #[arg(long, conflicts_with_all = ["time", "noise", "points", "replicates", "checkpoint"])]
+    adaptive: bool,
+    /// Loads the scene as the type that can render every scene, instead of the smallest that is enough
+    #[arg(long)]
+    general: bool,
+    /// Saves the work every few seconds, and goes on with it if the file is there
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<PathBuf>,
+    /// Writes what was done as JSON; `-` for the standard output
+    #[arg(long, value_name = "FILE|-")]
+    json: Option<PathBuf>,
+}
+
+/// The exit code after Ctrl-C, as shells have it.
+const INTERRUPTED: u8 = 130;
+
+/// Set by Ctrl-C.
+static STOP: AtomicBool = AtomicBool::new(false);
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) if STOP.load(Ordering::Relaxed) => ExitCode::from(INTERRUPTED),
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    use_threads(arguments.threads)?;
+    output::check(arguments)?;
+    let reference = arguments
+        .reference
+        .as_ref()
+        .map(Image::read_exr)
+        .transpose()?;
+    if !arguments.adaptive {
+        ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed))?;
+    }
+
+    let start = Instant::now();
+    let overrides: Vec<_> = arguments
+        .define
+        .iter()
+        .map(|(name, value)| (name.as_str(), value.as_str()))
+        .collect();
+    let description = mitsuba::read(&arguments.scene, &overrides)?;
+    let instance = match arguments.general {
+        true => Instance::General,
+        false => Instance::Smallest,
+    };
+    let loaded = description.load(instance)?;
+    let load_seconds = start.elapsed().as_secs_f64();
+    if let Some(reference) = &reference {
+        let size = [reference.width(), reference.height()];
+        if size != loaded.size.map(|length| length as usize) {
+            return Err(format!(
+                "the reference has {} x {} pixels, the picture {} x {}",
+                size[0], size[1], loaded.size[0], loaded.size[1]
+            )
+            .into());
+        }
+    }
+
+    let of_the_file = description.sensors[0].sampler.sample_count.into();
+    let plan = Plan::new(arguments, of_the_file);
+    let checkpoint = arguments.checkpoint.as_deref().map(|file| {
+        Checkpoint::new(
+            file,
+            &format!(
+                "{description:?} {plan:?} {} {}",
+                arguments.points, arguments.seed
+            ),
+        )
+    });
+    let job = Job {
+        picture: &*loaded.picture,
+        size: loaded.size,
+        points: match arguments.adaptive {
+            true => Points::Independent,
+            false => arguments.points,
+        },
+        seed: arguments.seed,
+        plan,
+        checkpoint: checkpoint.as_ref(),
+        stop: &STOP,
+    };
+    let work = match arguments.adaptive {
+        true => adaptive::run(&job, arguments.spp.unwrap_or(of_the_file))?,
+        false => Work::of(&job.run()?)?,
+    };
+    output::write(
+        arguments,
+        &Report {
+            job: &job,
+            work,
+            reference: reference.as_ref(),
+            left_out: &loaded.left_out,
+            load_seconds,
+        },
+    )
+}
+
+fn parameter(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or("a parameter is given as NAME=VALUE")?;
+    Ok((name.to_owned(), value.to_owned()))
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(value),
+        _ => Err("it must be a number above 0".to_owned()),
+    }
+}
+
+/// Sets the number of threads; 0 for as many as there are processors.
+#[cfg(feature = "parallel")]
+fn use_threads(threads: usize) -> Result<(), Box<dyn Error>> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()?;
+    Ok(())
+}
+
+/// Without the feature `parallel` there is one thread.
+#[cfg(not(feature = "parallel"))]
+fn use_threads(threads: usize) -> Result<(), Box<dyn Error>> {
+    match threads {
+        0 | 1 => Ok(()),
+        _ => Err(format!("built without the feature `parallel`: no {threads} threads").into()),
+    }
+}

@@ -1,0 +1,180 @@
+//! Rendering in passes.
+
+use std::error::Error;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use estimand::mitsuba::Picture;
+use estimand::{each, hash};
+
+use crate::checkpoint::Checkpoint;
+use crate::plan::Plan;
+use crate::points::Points;
+use crate::progress::Progress;
+use crate::state::{Row, State};
+
+/// How often the bar is drawn.
+const TICK: Duration = Duration::from_millis(100);
+
+/// How often work is saved at most, and how many times longer than saving it must have gone on.
+const SAVE: Duration = Duration::from_secs(5);
+const SAVE_RATIO: u32 = 20;
+
+/// A picture to be rendered.
+pub(crate) struct Job<'a> {
+    pub(crate) picture: &'a dyn Picture,
+    pub(crate) size: [u32; 2],
+    pub(crate) points: Points,
+    pub(crate) seed: u64,
+    pub(crate) plan: Plan,
+    pub(crate) checkpoint: Option<&'a Checkpoint>,
+    pub(crate) stop: &'a AtomicBool,
+}
+
+impl Job<'_> {
+    /// Renders until the plan is fulfilled or somebody stops it. It goes on with the work of the checkpoint, and leaves
+    /// its own there.
+    pub(crate) fn run(&self) -> Result<State, Box<dyn Error>> {
+        let saved = match self.checkpoint {
+            Some(checkpoint) => checkpoint.load()?,
+            None => None,
+        };
+        let state = Mutex::new(saved.unwrap_or_else(|| State::new(self.size)));
+        let finished = AtomicBool::new(false);
+        let outcome = std::thread::scope(|scope| {
+            let watch = scope.spawn(|| self.watch(&state, &finished));
+            let outcome = self.passes(&state);
+            finished.store(true, Ordering::Relaxed);
+            let watched = watch
+                .join()
+                .unwrap_or_else(|_| Err("the progress was lost".to_owned()));
+            outcome.and(watched)
+        });
+        let state = state
+            .into_inner()
+            .unwrap_or_else(|poisoned| poisoned.into_inner());
+        if let Some(checkpoint) = self.checkpoint {
+            checkpoint.save(&state)?;
+        }
+        outcome?;
+        Ok(state)
+    }
+
+    /// One pass after the other.
+    fn passes(&self, state: &Mutex<State>) -> Result<(), String> {
+        let before = lock(state).seconds;
+        let start = Instant::now();
+        while !self.stop.load(Ordering::Relaxed) {
+            let (pass, samples) = {
+                let state = lock(state);
+                let next =
+                    self.plan
+                        .next(state.passes, state.samples, state.seconds, state.noise());
+                let Some(samples) = next else {
+                    return Ok(());
+                };
+                (state.passes, samples)
+            };
+            let seed = hash::hash(self.seed, pass);
+            let rows = each(self.size[1].into(), |y| self.row(y, seed, samples, state));
+            lock(state).seconds = before + start.elapsed().as_secs_f64();
+            if rows
+                .into_iter()
+                .collect::<Result<Vec<_>, _>>()?
+                .into_iter()
+                .all(|done| done)
+            {
+                lock(state).complete(samples);
+            }
+        }
+        Ok(())
+    }
+
+    /// Renders a row of a pass, unless it is there or somebody stops it. Says whether it is there.
+    fn row(&self, y: u64, seed: u64, samples: u64, state: &Mutex<State>) -> Result<bool, String> {
+        let at = usize::try_from(y).map_err(|e| e.to_string())?;
+        if lock(state).has(at) {
+            return Ok(true);
+        }
+        let y = u32::try_from(y).map_err(|e| e.to_string())?;
+        let mut row = Row::default();
+        for x in 0..self.size[0] {
+            if self.stop.load(Ordering::Relaxed) {
+                return Ok(false);
+            }
+            let position = [x, y];
+            let points = self
+                .points
+                .of_pixel(position, seed, samples)
+                .map_err(|e| e.to_string())?;
+            let estimate = self
+                .picture
+                .average(position, self.size, &*points, samples)
+                .map_err(|e| format!("pixel ({x}, {y}): {e}"))?;
+            row.mean.push(estimate.mean.to_array());
+            row.paths += estimate.used;
+            row.rejected += estimate.rejected;
+        }
+        lock(state).add(at, row);
+        Ok(true)
+    }
+
+    /// Shows the progress and saves the work from time to time, until it is finished.
+    fn watch(&self, state: &Mutex<State>, finished: &AtomicBool) -> Result<(), String> {
+        let progress = Progress::new();
+        let before = lock(state).seconds;
+        let start = Instant::now();
+        let (mut saved, mut pause) = (Instant::now(), SAVE);
+        while !finished.load(Ordering::Relaxed) {
+            std::thread::sleep(TICK);
+            let seconds = before + start.elapsed().as_secs_f64();
+            {
+                let state = lock(state);
+                let next =
+                    self.plan
+                        .next(state.passes, state.samples, state.seconds, state.noise());
+                let done = state.samples as f64 + state.part() * next.unwrap_or(0) as f64;
+                let fraction = self.plan.fraction(done, seconds, state.noise());
+                progress.show(fraction, state.paths, seconds, state.noise());
+            }
+            let Some(checkpoint) = self.checkpoint else {
+                continue;
+            };
+            if saved.elapsed() >= pause {
+                let begun = Instant::now();
+                let mut copy = lock(state).clone();
+                copy.seconds = seconds;
+                checkpoint.save(&copy).map_err(|e| e.to_string())?;
+                pause = SAVE.max(begun.elapsed() * SAVE_RATIO);
+                saved = Instant::now();
+            }
+        }
+        progress.finish();
+        Ok(())
+    }
+
+    /// The mean number of coordinates of a path, over paths of all parts of the picture.
+    pub(crate) fn coordinates_per_path(&self) -> f64 {
+        const PATHS: u64 = 4096;
+        let mut sum = 0;
+        for path in 0..PATHS {
+            let word = hash::hash(self.seed, path);
+            let position = [(word, 0), (word >> 32, 1)].map(|(word, axis)| {
+                let size = u64::from(self.size[axis]);
+                u32::try_from(((word & 0xffff_ffff) * size) >> 32).expect("below the size")
+            });
+            let points = Points::Independent.of_pixel(position, word, 1);
+            let points = points.expect("independent points are never refused");
+            sum += self.picture.coordinates(position, self.size, &*points, 0);
+        }
+        sum as f64 / PATHS as f64
+    }
+}
+
+/// Also after a panic elsewhere: what is there is whole.
+fn lock(state: &Mutex<State>) -> std::sync::MutexGuard<'_, State> {
+    state
+        .lock()
+        .unwrap_or_else(|poisoned| poisoned.into_inner())
+}

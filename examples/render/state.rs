@@ -1,0 +1,121 @@
+//! What has been rendered so far.
+
+use estimand::Error;
+use estimand::path::Image;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// What has been rendered so far: all of some passes, and some rows of one.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub(crate) struct State {
+    width: usize,
+    /// How many passes are complete, and how many samples a pixel has in them.
+    pub(crate) passes: u64,
+    pub(crate) samples: u64,
+    /// Of all pixels: the mean over the passes, weighted by their samples.
+    mean: Vec<[f64; 3]>,
+    /// Of all pixels: the sum of squared deviations from it, weighted alike.
+    deviation: Vec<[f64; 3]>,
+    /// The rows of the pass that is not complete.
+    rows: Vec<Option<Row>>,
+    /// Evaluations of all that is here, and how many were not finite.
+    pub(crate) paths: u64,
+    pub(crate) rejected: u64,
+    /// The time that it took.
+    pub(crate) seconds: f64,
+}
+
+/// A row of a pass.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub(crate) struct Row {
+    pub(crate) mean: Vec<[f64; 3]>,
+    pub(crate) paths: u64,
+    pub(crate) rejected: u64,
+}
+
+impl State {
+    pub(crate) fn new([width, height]: [u32; 2]) -> Self {
+        let (width, height) = (width as usize, height as usize);
+        Self {
+            width,
+            passes: 0,
+            samples: 0,
+            mean: vec![[0.0; 3]; width * height],
+            deviation: vec![[0.0; 3]; width * height],
+            rows: vec![None; height],
+            paths: 0,
+            rejected: 0,
+            seconds: 0.0,
+        }
+    }
+
+    /// Whether a row of the present pass is there.
+    pub(crate) fn has(&self, row: usize) -> bool {
+        self.rows[row].is_some()
+    }
+
+    /// How much of the present pass is there, in `[0, 1]`.
+    pub(crate) fn part(&self) -> f64 {
+        let there = self.rows.iter().filter(|row| row.is_some()).count();
+        there as f64 / self.rows.len() as f64
+    }
+
+    pub(crate) fn add(&mut self, at: usize, row: Row) {
+        self.paths += row.paths;
+        self.rejected += row.rejected;
+        self.rows[at] = Some(row);
+    }
+
+    /// Merges the rows of a complete pass of so many samples into the picture.
+    pub(crate) fn complete(&mut self, samples: u64) {
+        self.passes += 1;
+        self.samples += samples;
+        let weight = samples as f64;
+        let share = weight / self.samples as f64;
+        let rows = self.rows.iter_mut().map(Option::take);
+        let values = rows.flat_map(|row| row.unwrap_or_default().mean);
+        for ((mean, deviation), value) in self.mean.iter_mut().zip(&mut self.deviation).zip(values)
+        {
+            for channel in 0..3 {
+                let off = value[channel] - mean[channel];
+                mean[channel] += off * share;
+                deviation[channel] += weight * off * (value[channel] - mean[channel]);
+            }
+        }
+    }
+
+    /// The root-mean-square error of the pixels over the mean, as estimated; `None` before there are two passes.
+    pub(crate) fn noise(&self) -> Option<f64> {
+        let divisor = self.divisor()?;
+        let squares: f64 = self.deviation.as_flattened().iter().sum();
+        let sum: f64 = self.mean.as_flattened().iter().sum();
+        let count = (3 * self.mean.len()) as f64;
+        let noise = (squares / divisor / count).sqrt() / (sum / count).abs();
+        noise.is_finite().then_some(noise)
+    }
+
+    /// What deviations are divided by to be squared standard errors.
+    fn divisor(&self) -> Option<f64> {
+        (self.passes > 1).then(|| (self.passes - 1) as f64 * self.samples as f64)
+    }
+
+    /// The picture: of complete passes, or of the rows of the first one, black elsewhere.
+    pub(crate) fn image(&self) -> Result<Image, Error> {
+        let mut pixels: Vec<DVec3> = self.mean.iter().copied().map(DVec3::from).collect();
+        if self.passes == 0 {
+            for (row, pixels) in self.rows.iter().zip(pixels.chunks_mut(self.width)) {
+                let values = row.iter().flat_map(|row| &row.mean);
+                for (pixel, &value) in pixels.iter_mut().zip(values) {
+                    *pixel = DVec3::from(value);
+                }
+            }
+        }
+        let image = Image::new(self.width, pixels)?;
+        let Some(divisor) = self.divisor() else {
+            return Ok(image);
+        };
+        let error = |deviation: &[f64; 3]| DVec3::from(deviation.map(|sum| (sum / divisor).sqrt()));
+        let errors = self.deviation.iter().map(error).collect();
+        image.with_std_error(Image::new(self.width, errors)?)
+    }
+}

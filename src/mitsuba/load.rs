@@ -1,0 +1,274 @@
+//! From a [`Description`] to a scene that can be rendered, of the smallest type that is enough.
+
+mod filter;
+mod geometry;
+mod material;
+mod needs;
+mod surroundings;
+
+use std::fmt;
+
+use super::picture::Picture;
+use super::sensor::Projection;
+use super::texture as described;
+use super::{Description, SceneError, Sensor, Techniques};
+use crate::Error;
+use crate::path::bsdf::{Lambertian, Material};
+use crate::path::light::{
+    AreaLights, Background, Constant, Environment, Light, NoEnvironment, NoLight, Surroundings,
+};
+use crate::path::sensor::{self, Camera, Orthographic, Pinhole, ThinLens};
+use crate::path::texture::{Texture, Uniform};
+use crate::path::{Instances, Object, Paths, Scene, View};
+use filter::AnyFilter;
+use geometry::{Pieces, Solid};
+use material::{Images, Make, Value};
+use needs::Needs;
+
+/// Which type a scene is loaded as.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Instance {
+    /// The smallest that can render it: what the scene lacks costs no code, no coordinate and no memory.
+    #[default]
+    Smallest,
+    /// The one that can render every scene.
+    General,
+}
+
+/// A scene that can be rendered.
+#[derive(Debug)]
+pub struct Loaded {
+    /// What is seen.
+    pub picture: Box<dyn Picture>,
+    /// The width and the height of the picture, in pixels: those of the crop.
+    pub size: [u32; 2],
+    /// What the scene has no need of, and what it has in vain: parts of the tracer, lights without power, triangles
+    /// without area, objects that nothing refers to.
+    pub left_out: Vec<String>,
+}
+
+impl Description {
+    /// Loads the files that the scene names and makes it ready to be rendered, by its first sensor.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError`] for files that cannot be read, and for what the path tracer has no counterpart of or refuses.
+    pub fn load(&self, instance: Instance) -> Result<Loaded, SceneError> {
+        let pieces = Pieces::load(self)?;
+        let surroundings = surroundings::load(self)?;
+        let needs = match instance {
+            Instance::Smallest => Needs::of(self, &pieces, &surroundings),
+            Instance::General => Needs::ALL,
+        };
+        let mut left_out = needs.left_out();
+        left_out.extend(pieces.left_out.iter().cloned());
+        left_out.extend(surroundings.left_out.iter().cloned());
+        left_out.extend(
+            self.unused
+                .iter()
+                .map(|place| format!("{} at {place}", place.element())),
+        );
+        let crop = self.sensors[0].film.crop;
+        let plan = Plan {
+            description: self,
+            sensor: &self.sensors[0],
+            needs,
+            pieces,
+            background: surroundings.background,
+            sources: surroundings.sources,
+        };
+        Ok(Loaded {
+            picture: plan.scattering()?,
+            size: [crop.width, crop.height],
+            left_out,
+        })
+    }
+}
+
+/// A scene on its way to a type, which is found part by part.
+struct Plan<'a> {
+    description: &'a Description,
+    sensor: &'a Sensor,
+    needs: Needs,
+    pieces: Pieces<'a>,
+    background: Background,
+    sources: Vec<crate::path::light::Source>,
+}
+
+impl Plan<'_> {
+    /// With the laws of scattering that it needs.
+    fn scattering(self) -> Result<Box<dyn Picture>, SceneError> {
+        if self.needs.shading {
+            self.light::<Material<Texture>>()
+        } else if self.needs.materials {
+            self.light::<Material<Uniform>>()
+        } else {
+            self.light::<Lambertian>()
+        }
+    }
+
+    /// With the sources of light that it needs.
+    fn light<B: Make>(mut self) -> Result<Box<dyn Picture>, SceneError> {
+        let sources = core::mem::take(&mut self.sources);
+        let background = core::mem::replace(&mut self.background, Background::None);
+        let refused = |e: Error| self.description.place.error(e);
+        if self.needs.surroundings {
+            let surroundings = Surroundings::new(sources, background).map_err(refused)?;
+            return match self.needs.area_lights {
+                true => self.view::<B, AreaLights, _>(surroundings),
+                false => self.view::<B, NoLight, _>(surroundings),
+            };
+        }
+        match (background, self.needs.area_lights) {
+            (Background::Constant(constant), true) => {
+                self.view::<B, AreaLights, Constant>(constant)
+            }
+            (Background::Constant(constant), false) => self.view::<B, NoLight, Constant>(constant),
+            (_, true) => self.view::<B, AreaLights, _>(NoEnvironment),
+            (_, false) => self.view::<B, NoLight, _>(NoEnvironment),
+        }
+    }
+
+    /// With the camera that it needs.
+    fn view<B, L, E>(self, environment: E) -> Result<Box<dyn Picture>, SceneError>
+    where
+        B: Make,
+        L: Light + fmt::Debug + 'static,
+        E: Environment + fmt::Debug + 'static,
+    {
+        let refused = |e: Error| self.description.place.error(e);
+        let paths = self.paths()?;
+        let camera = self.camera().map_err(refused)?;
+        let film = &self.sensor.film;
+        let filter = AnyFilter::of(film.filter).map_err(refused)?;
+        if film.sample_border && !matches!(filter, AnyFilter::Box(_)) {
+            return Err(self.description.place.error(
+                "`sample_border` is supported for the box filter only, which does without; leave it out",
+            ));
+        }
+        let place = self.description.place.clone();
+        let refused = |e: Error| place.error(e);
+        let needs = self.needs;
+        let (objects, instances) = objects::<B>(self.pieces)?;
+        let scene =
+            Scene::<B, L, E>::with_instances(objects, instances, environment).map_err(refused)?;
+        Ok(match (camera, filter) {
+            (Camera::Pinhole(sensor), AnyFilter::Box(filter)) if !needs.camera => Box::new(View {
+                scene,
+                sensor,
+                filter,
+                paths,
+            }),
+            (sensor, filter) => Box::new(View {
+                scene,
+                sensor,
+                filter,
+                paths,
+            }),
+        })
+    }
+
+    fn camera(&self) -> Result<Camera, Error> {
+        let Sensor {
+            film, projection, ..
+        } = self.sensor;
+        let [width, height] = [film.width, film.height].map(f64::from);
+        let [left, top] = [
+            f64::from(film.crop.x) / width,
+            f64::from(film.crop.y) / height,
+        ];
+        let right = f64::from(film.crop.x + film.crop.width) / width;
+        let bottom = f64::from(film.crop.y + film.crop.height) / height;
+        let mut placed = sensor::Projection {
+            to_world: self.sensor.to_world,
+            aspect: width / height,
+            window: [[left, top], [right, bottom]],
+            near: self.sensor.near_clip,
+            ..sensor::Projection::default()
+        };
+        match *projection {
+            Projection::Perspective {
+                fov,
+                principal_point_offset,
+            } => {
+                placed.width_degrees = fov;
+                placed.principal_point_offset = principal_point_offset.to_array();
+                Ok(Pinhole::new(&placed)?.into())
+            }
+            Projection::ThinLens {
+                fov,
+                aperture_radius,
+                focus_distance,
+            } => {
+                placed.width_degrees = fov;
+                Ok(ThinLens::new(&placed, aperture_radius, focus_distance)?.into())
+            }
+            Projection::Orthographic => Ok(Orthographic::new(&placed)?.into()),
+        }
+    }
+
+    fn paths(&self) -> Result<Paths, SceneError> {
+        let Description {
+            integrator, place, ..
+        } = self.description;
+        if integrator.techniques == Techniques::Bsdfs && needs::has_points(self.description) {
+            return Err(place.error(
+                "without `emitter_samples` lights without size would be missed; leave them at 1",
+            ));
+        }
+        if integrator.techniques == Techniques::Emitters && needs::has_delta(self.description) {
+            return Err(place.error(
+                "without `bsdf_samples` mirrors and glass would be black; leave them at 1",
+            ));
+        }
+        let mut paths = Paths::default().roulette_from(integrator.rr_depth);
+        if integrator.hide_emitters {
+            paths = paths.hiding_lights();
+        }
+        match integrator.max_depth {
+            None => Ok(paths),
+            Some(depth) => paths.longest(depth).map_err(|e| place.error(e)),
+        }
+    }
+}
+
+/// The objects of a scene, and those that stand in it many times over.
+#[expect(clippy::type_complexity, reason = "two lists, for one call")]
+fn objects<B: Make>(pieces: Pieces<'_>) -> Result<(Vec<Object<B>>, Vec<Instances<B>>), SceneError> {
+    let mut images = Images::default();
+    let mut object = |solid: Solid<'_>| {
+        let shape = solid.shape;
+        let refused = |message: String| shape.place.error(message);
+        let bsdf = B::make(&shape.bsdf, &mut images).map_err(refused)?;
+        let object = solid.surface.object(bsdf);
+        match solid.radiance {
+            None => Ok(object),
+            Some(described::Texture::Constant(radiance)) => object
+                .emitting(surroundings::narrow(*radiance))
+                .map_err(|e| refused(e.to_string())),
+            Some(picture) => {
+                let picture = Value::value(picture, &mut images).map_err(refused)?;
+                object
+                    .emitting_picture(picture)
+                    .map_err(|e| refused(e.to_string()))
+            }
+        }
+    };
+    let objects = pieces
+        .solids
+        .into_iter()
+        .map(&mut object)
+        .collect::<Result<_, SceneError>>()?;
+    let instances = pieces
+        .groups
+        .into_iter()
+        .map(|group| {
+            let objects = group.solids.into_iter().map(&mut object);
+            Ok(Instances {
+                objects: objects.collect::<Result<_, SceneError>>()?,
+                places: group.places,
+            })
+        })
+        .collect::<Result<_, SceneError>>()?;
+    Ok((objects, instances))
+}

@@ -1,0 +1,196 @@
+//! What a scene needs of the path tracer.
+
+use super::geometry::Pieces;
+use super::surroundings::Surroundings;
+use crate::mitsuba::{
+    Bsdf, Conductor, Description, Dielectric, Emitter, Filter, Plastic, Projection, Roughness,
+    Texture,
+};
+use crate::path::light::Background;
+
+/// What a scene needs of the path tracer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Needs {
+    /// Texture coordinates, or normals that are not those of the surface.
+    pub(super) shading: bool,
+    /// Other laws of scattering than the ideally diffuse one.
+    pub(super) materials: bool,
+    /// Shapes that emit light.
+    pub(super) area_lights: bool,
+    /// Lights without size, or a picture of the sky.
+    pub(super) surroundings: bool,
+    /// The same light from everywhere.
+    pub(super) constant: bool,
+    /// A camera with a lens or without perspective, or a filter wider than a pixel.
+    pub(super) camera: bool,
+    pub(super) instances: bool,
+}
+
+impl Needs {
+    /// Everything.
+    pub(super) const ALL: Self = Self {
+        shading: true,
+        materials: true,
+        area_lights: true,
+        surroundings: true,
+        constant: true,
+        camera: true,
+        instances: true,
+    };
+
+    pub(super) fn of(
+        description: &Description,
+        pieces: &Pieces<'_>,
+        surroundings: &Surroundings,
+    ) -> Self {
+        let sensor = &description.sensors[0];
+        let solids = || {
+            let copied = pieces.groups.iter().flat_map(|group| &group.solids);
+            pieces.solids.iter().chain(copied)
+        };
+        let is_sky = matches!(surroundings.background, Background::Sky(_));
+        Self {
+            shading: solids().any(|solid| solid.surface.is_smooth() || varies(&solid.shape.bsdf)),
+            materials: !solids().all(|solid| is_lambertian(&solid.shape.bsdf)),
+            area_lights: solids().any(|solid| solid.radiance.is_some()),
+            surroundings: is_sky || !surroundings.sources.is_empty(),
+            constant: matches!(surroundings.background, Background::Constant(_)),
+            camera: !matches!(sensor.projection, Projection::Perspective { .. })
+                || sensor.film.filter != Filter::Box,
+            instances: !pieces.groups.is_empty(),
+        }
+    }
+
+    /// The parts that it does not need.
+    pub(super) fn left_out(&self) -> Vec<String> {
+        let materials = self.materials || self.shading;
+        [
+            (self.shading, "textures and interpolated normals"),
+            (materials, "laws of scattering other than the diffuse one"),
+            (self.area_lights, "shapes that emit light"),
+            (self.surroundings, "lights without size and skies"),
+            (self.surroundings || self.constant, "an environment"),
+            (self.camera, "lens, orthographic camera and wide filters"),
+            (self.instances, "instances"),
+        ]
+        .into_iter()
+        .filter(|(needed, _)| !needed)
+        .map(|(_, part)| part.to_owned())
+        .collect()
+    }
+}
+
+/// Whether it is ideally diffuse on both sides, with one colour.
+pub(super) fn is_lambertian(bsdf: &Bsdf) -> bool {
+    match bsdf {
+        Bsdf::Diffuse {
+            reflectance: Texture::Constant(color),
+        } => *color == glam::DVec3::ZERO,
+        Bsdf::TwoSided { front, back } => {
+            front == back
+                && matches!(
+                    **front,
+                    Bsdf::Diffuse {
+                        reflectance: Texture::Constant(_)
+                    }
+                )
+        }
+        _ => false,
+    }
+}
+
+/// Whether it varies over the surface, or with the direction along it.
+fn varies(bsdf: &Bsdf) -> bool {
+    let textures: &[&Texture] = match bsdf {
+        Bsdf::Null => &[],
+        Bsdf::BumpMap { .. } | Bsdf::NormalMap { .. } => return true,
+        Bsdf::TwoSided { front, back } => return varies(front) || varies(back),
+        Bsdf::Diffuse { reflectance } => &[reflectance],
+        Bsdf::Conductor(conductor) => return conductor_varies(conductor),
+        Bsdf::RoughConductor {
+            conductor,
+            roughness,
+        } => return conductor_varies(conductor) || roughness_varies(roughness),
+        Bsdf::Dielectric(dielectric) | Bsdf::ThinDielectric(dielectric) => {
+            return dielectric_varies(dielectric);
+        }
+        Bsdf::RoughDielectric {
+            dielectric,
+            roughness,
+        } => return dielectric_varies(dielectric) || roughness_varies(roughness),
+        Bsdf::Plastic(plastic) | Bsdf::RoughPlastic { plastic, .. } => {
+            return plastic_varies(plastic);
+        }
+        Bsdf::Mask { opacity, nested } => return any_varies(&[opacity]) || varies(nested),
+        Bsdf::Blend {
+            weight,
+            first,
+            second,
+        } => return any_varies(&[weight]) || varies(first) || varies(second),
+    };
+    any_varies(textures)
+}
+
+fn any_varies(textures: &[&Texture]) -> bool {
+    !textures
+        .iter()
+        .all(|texture| matches!(texture, Texture::Constant(_)))
+}
+
+fn conductor_varies(conductor: &Conductor) -> bool {
+    let Conductor {
+        eta,
+        k,
+        specular_reflectance,
+    } = conductor;
+    any_varies(&[eta, k, specular_reflectance])
+}
+
+fn dielectric_varies(dielectric: &Dielectric) -> bool {
+    any_varies(&[
+        &dielectric.specular_reflectance,
+        &dielectric.specular_transmittance,
+    ])
+}
+
+fn plastic_varies(plastic: &Plastic) -> bool {
+    any_varies(&[&plastic.diffuse_reflectance, &plastic.specular_reflectance])
+}
+
+/// Directions along the surface are those of texture coordinates.
+fn roughness_varies(roughness: &Roughness) -> bool {
+    any_varies(&[&roughness.alpha_u]) || roughness.alpha_u != roughness.alpha_v
+}
+
+/// Whether there are lights without size.
+pub(super) fn has_points(description: &Description) -> bool {
+    description.emitters.iter().any(|emitter| {
+        matches!(
+            emitter,
+            Emitter::Point { .. } | Emitter::Spot(_) | Emitter::Directional { .. }
+        )
+    })
+}
+
+/// Whether some surface scatters light to single directions.
+pub(super) fn has_delta(description: &Description) -> bool {
+    description.shapes.iter().any(|shape| is_delta(&shape.bsdf))
+}
+
+fn is_delta(bsdf: &Bsdf) -> bool {
+    match bsdf {
+        Bsdf::Diffuse { .. }
+        | Bsdf::RoughConductor { .. }
+        | Bsdf::RoughDielectric { .. }
+        | Bsdf::RoughPlastic { .. } => false,
+        Bsdf::Conductor(_)
+        | Bsdf::Dielectric(_)
+        | Bsdf::ThinDielectric(_)
+        | Bsdf::Plastic(_)
+        | Bsdf::Mask { .. }
+        | Bsdf::Null => true,
+        Bsdf::TwoSided { front, back } => is_delta(front) || is_delta(back),
+        Bsdf::Blend { first, second, .. } => is_delta(first) || is_delta(second),
+        Bsdf::BumpMap { nested, .. } | Bsdf::NormalMap { nested, .. } => is_delta(nested),
+    }
+}

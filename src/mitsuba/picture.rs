@@ -1,0 +1,134 @@
+//! Scenes ready to be rendered, of whatever types they are made.
+
+use core::cell::Cell;
+use core::fmt;
+
+use glam::DVec3;
+
+use crate::path::bsdf::Bsdf;
+use crate::path::filter::Filter;
+use crate::path::light::{Environment, Light};
+use crate::path::sensor::Sensor;
+use crate::path::{Adapted, Adaptive, Pixel, Unfinished, View};
+use crate::points::PointSet;
+use crate::{Average, Estimate, Estimator, Incomplete, Integrand, NonFinite, Sampler};
+
+/// A [`View`] of any types, behind a pointer.
+pub trait Picture: Sync + fmt::Debug {
+    /// The mean radiance of a pixel over the first `count` of some points, or over all of a finite set. Values that are not
+    /// finite are left out and counted.
+    ///
+    /// # Errors
+    ///
+    /// [`Incomplete`] if the points are none, or no value is finite.
+    fn average(
+        &self,
+        position: [u32; 2],
+        size: [u32; 2],
+        points: &dyn PointSet,
+        count: u64,
+    ) -> Result<Estimate<DVec3>, Incomplete<DVec3>>;
+
+    /// The picture with more samples where it varies more: see [`View::render_adaptive`].
+    ///
+    /// # Errors
+    ///
+    /// [`Unfinished`] as there.
+    fn adaptive(
+        &self,
+        size: [u32; 2],
+        seed: u64,
+        adaptive: Adaptive,
+    ) -> Result<Adapted, Unfinished>;
+
+    /// How many coordinates the sample of a pixel at one of the points takes.
+    fn coordinates(
+        &self,
+        position: [u32; 2],
+        size: [u32; 2],
+        points: &dyn PointSet,
+        index: u64,
+    ) -> u64;
+}
+
+impl<B, L, E, C, F> Picture for View<B, L, E, C, F>
+where
+    B: Bsdf + fmt::Debug,
+    L: Light + fmt::Debug,
+    E: Environment + fmt::Debug,
+    C: Sensor + fmt::Debug,
+    F: Filter + fmt::Debug,
+{
+    fn average(
+        &self,
+        position: [u32; 2],
+        size: [u32; 2],
+        points: &dyn PointSet,
+        count: u64,
+    ) -> Result<Estimate<DVec3>, Incomplete<DVec3>> {
+        Average::new(points, count)
+            .non_finite(NonFinite::Reject)
+            .estimate(&pixel(self, position, size))
+    }
+
+    fn adaptive(
+        &self,
+        size: [u32; 2],
+        seed: u64,
+        adaptive: Adaptive,
+    ) -> Result<Adapted, Unfinished> {
+        self.render_adaptive(size, seed, adaptive)
+    }
+
+    fn coordinates(
+        &self,
+        position: [u32; 2],
+        size: [u32; 2],
+        points: &dyn PointSet,
+        index: u64,
+    ) -> u64 {
+        let drawn = Cell::new(0);
+        let mut counting = Counting {
+            points,
+            index,
+            drawn: &drawn,
+        };
+        pixel(self, position, size).evaluate(&mut counting);
+        u64::from(drawn.get())
+    }
+}
+
+fn pixel<B, L, E, C, F>(
+    view: &View<B, L, E, C, F>,
+    position: [u32; 2],
+    size: [u32; 2],
+) -> Pixel<'_, B, L, E, C, F> {
+    Pixel {
+        scene: &view.scene,
+        sensor: &view.sensor,
+        filter: &view.filter,
+        paths: view.paths,
+        position,
+        size,
+    }
+}
+
+/// The coordinates of one point, and how many have been asked for.
+struct Counting<'a> {
+    points: &'a dyn PointSet,
+    index: u64,
+    drawn: &'a Cell<u32>,
+}
+
+impl Sampler for Counting<'_> {
+    fn next_1d(&mut self) -> f64 {
+        let dimension = self.drawn.get();
+        self.drawn.set(dimension + 1);
+        // Past the last dimension any number is as good: paths as long as that are rare.
+        if dimension < self.points.dimensions() {
+            self.points.coordinate(self.index, dimension)
+        } else {
+            crate::hash::unit(crate::hash::hash(self.index, dimension.into()))
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! The triangles of all meshes.
+
+use glam::Vec3A;
+
+use super::Found;
+use super::tree::Tree;
+use crate::path::Shading;
+use crate::path::ray::{Ray, Surface};
+use crate::path::shape::{Flat, Mesh, Shape};
+
+/// The triangles of some meshes, one mesh after the other, and a tree around them.
+#[derive(Debug)]
+pub(super) struct Soup {
+    meshes: Vec<Mesh>,
+    /// The number of triangles before each mesh.
+    starts: Vec<usize>,
+    flats: Vec<Flat>,
+    tree: Tree,
+}
+
+impl Soup {
+    /// The triangles of the meshes; `None` if there are none.
+    pub(super) fn new(meshes: Vec<Mesh>) -> Option<Self> {
+        let mut flats = Vec::with_capacity(meshes.iter().map(|mesh| mesh.triangles().len()).sum());
+        let mut starts = Vec::with_capacity(meshes.len());
+        for mesh in &meshes {
+            starts.push(flats.len());
+            flats.extend((0..mesh.triangles().len()).map(|triangle| mesh.flat(triangle)));
+        }
+        let tree = (!flats.is_empty()).then(|| Tree::new(&flats))?;
+        Some(Self {
+            meshes,
+            starts,
+            flats,
+            tree,
+        })
+    }
+
+    pub(super) fn bounds(&self) -> [Vec3A; 2] {
+        super::around(self.flats.iter().map(Shape::bounds))
+    }
+
+    #[inline]
+    pub(super) fn nearest(&self, ray: &Ray, limit: f32) -> Option<Found> {
+        self.tree.nearest(&self.flats, ray, limit)
+    }
+
+    #[inline]
+    pub(super) fn occluded(&self, ray: &Ray, limit: f32) -> bool {
+        self.tree.occluded(&self.flats, ray, limit)
+    }
+
+    #[inline]
+    pub(super) fn surface(&self, triangle: usize, ray: &Ray, distance: f32) -> Surface {
+        self.flats[triangle].surface(ray, distance)
+    }
+
+    /// Which of the meshes a triangle belongs to.
+    #[inline]
+    pub(super) fn mesh(&self, triangle: usize) -> usize {
+        self.starts.partition_point(|&start| start <= triangle) - 1
+    }
+
+    pub(super) fn shading(&self, triangle: usize, surface: &Surface) -> Shading {
+        let mesh = self.mesh(triangle);
+        let within = triangle - self.starts[mesh];
+        self.meshes[mesh].shading(within, &self.flats[triangle], surface)
+    }
+}

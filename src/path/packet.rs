@@ -1,0 +1,224 @@
+//! Many paths at once, one in each lane of the vectors that the machine has.
+//!
+//! For scenes of few flat shapes that scatter light ideally diffusely and emit it, below a constant sky or none. Every lane has
+//! the bits of [`Paths::radiance`]: the same arithmetic in the same order, the coordinates read in the same order.
+
+mod lanes;
+mod place;
+mod sweep;
+mod walk;
+
+use glam::{Vec3, Vec3A};
+
+use super::Paths;
+use super::geometry::Geometry;
+use super::light::AreaLights;
+use super::render::Start;
+use super::shape::Primitive;
+use crate::Sampler;
+
+pub(in crate::path) use place::{Emitted, Optics};
+
+use place::{MOST, Table};
+use sweep::Shapes;
+use walk::Walk;
+
+/// A scene that many paths are followed in at once.
+#[derive(Debug)]
+pub(in crate::path) struct Packet {
+    table: Table,
+    shapes: Shapes,
+    /// Those of them that can be between two points of the scene.
+    dividing: Shapes,
+    lights: AreaLights,
+    /// The shape of each emitter.
+    emitters: Vec<u32>,
+    sky: Vec3A,
+    triangles: bool,
+    slanted_lights: bool,
+    one_sided: bool,
+    arch: pulp::Arch,
+}
+
+impl Packet {
+    /// The scene of the given shapes and lights, if it is one of those. `optics` tells what a shape does to light, if that is
+    /// among what packets know.
+    pub(in crate::path) fn new(
+        geometry: &Geometry,
+        optics: impl Fn(usize) -> Option<Optics>,
+        lights: &AreaLights,
+        sky: Vec3A,
+    ) -> Option<Self> {
+        let (primitives, sweep) = geometry.few()?;
+        if sweep.flat_shapes.len() != primitives.len() || primitives.len() > MOST {
+            return None;
+        }
+        let mut packet = Self {
+            table: Table::EMPTY,
+            shapes: Shapes::default(),
+            dividing: Shapes::default(),
+            lights: lights.clone(),
+            emitters: Vec::new(),
+            sky,
+            triangles: false,
+            slanted_lights: false,
+            one_sided: false,
+            arch: pulp::Arch::new(),
+        };
+        let mut emitters = Vec::new();
+        for (place, &shape) in sweep.flat_shapes.iter().enumerate() {
+            let Primitive::Flat(flat) = &primitives[shape] else {
+                return None;
+            };
+            let optics = optics(shape)?;
+            let number = u32::try_from(place).ok()?;
+            packet.table.set(place, flat, &optics);
+            packet.shapes.push(number, flat);
+            if geometry.divides(flat) {
+                packet.dividing.push(number, flat);
+            }
+            packet.triangles |= flat.slant != 0.0;
+            packet.one_sided |= !optics.inner;
+            if let Some(light) = optics.emitted {
+                packet.slanted_lights |= flat.slant != 0.0;
+                emitters.push((light.emitter, number));
+            }
+        }
+        emitters.sort_unstable();
+        packet.emitters = emitters.into_iter().map(|(_, shape)| shape).collect();
+        Some(packet)
+    }
+
+    /// What [`Paths::radiance`] gives for each of the points, times the weight that its start has.
+    pub(in crate::path) fn radiance<U: Sampler>(
+        &self,
+        paths: Paths,
+        start: impl Fn(&mut U) -> Start,
+        points: &mut [U],
+        values: &mut [Vec3],
+    ) {
+        self.arch.dispatch(Walk {
+            packet: self,
+            paths,
+            start,
+            points,
+            values,
+        });
+    }
+
+    /// The shape that a coordinate chooses among the lights, and what is left of the coordinate.
+    #[inline(always)]
+    fn choose(&self, u: f64) -> (u32, f64) {
+        let (chosen, u) = self.lights.choose(u);
+        (self.emitters[chosen], u)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use crate::hash::{hash, unit_f32};
+    use crate::path::bsdf::{Bsdf, Lambertian};
+    use crate::path::light::{AreaLights, Constant, Environment, Light, NoEnvironment, NoLight};
+    use crate::path::sensor::Pinhole;
+    use crate::path::shape::{Flat, cuboid};
+    use crate::path::{Object, Paths, Pixel, Scene, View, filter::BoxFilter, scenes};
+    use crate::points::{HashedOwen, PointSet, Sobol};
+    use crate::{Error, Integrand};
+
+    /// Every value of `evaluate_many` must be that of `evaluate`, to the bit.
+    fn agree<B: Bsdf, L: Light, E: Environment>(view: &View<B, L, E, Pinhole>) {
+        assert!(view.scene.packet().is_some(), "the scene has packets");
+        let size = [7, 5];
+        for position in [[0, 0], [3, 4], [6, 2], [2, 1]] {
+            let pixel = Pixel {
+                scene: &view.scene,
+                sensor: &view.sensor,
+                filter: &view.filter,
+                paths: view.paths,
+                position,
+                size,
+            };
+            let seed = hash(u64::from(position[0]), u64::from(position[1]));
+            let points = Sobol::new(12).unwrap().scrambled(HashedOwen { seed });
+            for count in [1, 15, 300] {
+                let mut samplers: Vec<_> = (0..count).map(|index| points.point(index)).collect();
+                let mut values = vec![Vec3::NAN; samplers.len()];
+                pixel.evaluate_many(&mut samplers, &mut values);
+                for (index, value) in (0..count).zip(values) {
+                    let expected = pixel.evaluate(&mut points.point(index));
+                    assert_eq!(value, expected, "{position:?}, point {index} of {count}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn packets_give_the_bits_of_single_paths_in_the_cornell_box() {
+        let mut view = scenes::cornell_box();
+        agree(&view);
+        for longest in [1, 2, 8] {
+            view.paths = Paths::default().longest(longest).unwrap();
+            agree(&view);
+        }
+        view.paths = Paths::default().roulette_from(1);
+        agree(&view);
+    }
+
+    /// A room of triangles, turned, below a sky, with lights of both kinds.
+    fn room<L: Light, E: Environment>(
+        lit: bool,
+        environment: E,
+    ) -> Result<View<Lambertian, L, E, Pinhole>, Error> {
+        let mut state = 0;
+        let mut random = || {
+            state += 1;
+            unit_f32(hash(11, state))
+        };
+        let mut objects = vec![Object::new(
+            cuboid(
+                [0.0; 3],
+                [[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.0]],
+            )?
+            .into_iter()
+            .skip(1)
+            .map(Flat::turned),
+            Lambertian::new([0.7, 0.5, 0.9])?,
+        )];
+        for k in 0..12 {
+            let corners = [0; 3].map(|_| [0; 3].map(|_| 1.2 * random() - 0.6));
+            let object = Object::new([Flat::triangle(corners)?], Lambertian::new([0.5; 3])?);
+            let light = lit && k < 4;
+            objects.push(if light {
+                object.emitting([1.0, k as f32, 2.0])?
+            } else {
+                object
+            });
+        }
+        if lit {
+            let lamp = Flat::parallelogram([-0.1, 0.7, 0.0], [0.2, 0.0, 0.0], [0.0, 0.0, 0.2])?;
+            objects.push(Object::new([lamp], Lambertian::new([0.0; 3])?).emitting([9.0; 3])?);
+        }
+        Ok(View {
+            scene: Scene::new(objects, environment)?,
+            sensor: Pinhole::look_at([0.1, -0.1, -0.9], [0.0; 3], [0.0, 1.0, 0.0], 70.0, 1.4)?,
+            filter: BoxFilter,
+            paths: Paths::default(),
+        })
+    }
+
+    #[test]
+    fn packets_give_the_bits_of_single_paths_among_triangles_and_many_lights() {
+        agree::<_, AreaLights, _>(&room(true, NoEnvironment).unwrap());
+        let sky = Constant::new([0.2, 0.3, 0.4]).unwrap();
+        agree::<_, AreaLights, _>(&room(true, sky).unwrap());
+        agree::<_, NoLight, _>(&room(false, sky).unwrap());
+    }
+
+    #[test]
+    fn other_scenes_have_no_packets() {
+        assert!(scenes::environment().scene.packet().is_none());
+        assert!(scenes::cornell_box_specular().scene.packet().is_none());
+    }
+}

@@ -1,0 +1,433 @@
+//! Numbers and vectors, one a lane, with the arithmetic of single ones.
+//!
+//! Every operation is that of `f32` in each lane, none is fused: a lane has the bits that a loop over single
+//! numbers has, whatever the width of the vectors.
+
+use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub};
+
+use glam::Vec3A;
+use pulp::Simd;
+
+/// The widest vectors there are.
+pub(super) const WIDEST: usize = 16;
+
+/// Room for a number for each lane, to be written and read lane by lane.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Row<T>(pub(super) [T; WIDEST]);
+
+impl Row<f32> {
+    pub(super) const ZERO: Self = Self([0.0; WIDEST]);
+}
+
+impl Row<u32> {
+    pub(super) const ZERO: Self = Self([0; WIDEST]);
+}
+
+/// A number a lane.
+#[derive(Clone, Copy)]
+pub(super) struct Real<S: Simd> {
+    simd: S,
+    lanes: S::f32s,
+}
+
+/// A truth value a lane.
+#[derive(Clone, Copy)]
+pub(super) struct Mask<S: Simd> {
+    simd: S,
+    lanes: S::m32s,
+}
+
+/// The number of a shape a lane.
+#[derive(Clone, Copy)]
+pub(super) struct Index<S: Simd> {
+    lanes: S::u32s,
+}
+
+impl<S: Simd> Index<S> {
+    #[inline(always)]
+    pub(super) fn splat(simd: S, number: u32) -> Self {
+        Self {
+            lanes: simd.splat_u32s(number),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn store(self, row: &mut Row<u32>) {
+        S::as_mut_simd_u32s(&mut row.0).0[0] = self.lanes;
+    }
+}
+
+impl<S: Simd> Real<S> {
+    #[inline(always)]
+    pub(super) fn splat(simd: S, number: f32) -> Self {
+        Self {
+            simd,
+            lanes: simd.splat_f32s(number),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn load(simd: S, row: &Row<f32>) -> Self {
+        Self {
+            simd,
+            lanes: S::as_simd_f32s(&row.0).0[0],
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn store(self, row: &mut Row<f32>) {
+        S::as_mut_simd_f32s(&mut row.0).0[0] = self.lanes;
+    }
+
+    #[inline(always)]
+    fn make(self, lanes: S::f32s) -> Self {
+        Self {
+            simd: self.simd,
+            lanes,
+        }
+    }
+
+    #[inline(always)]
+    fn mask(self, lanes: S::m32s) -> Mask<S> {
+        Mask {
+            simd: self.simd,
+            lanes,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn simd(self) -> S {
+        self.simd
+    }
+
+    /// The same number in all lanes.
+    #[inline(always)]
+    pub(super) fn all(self, number: f32) -> Self {
+        Self::splat(self.simd, number)
+    }
+
+    #[inline(always)]
+    pub(super) fn abs(self) -> Self {
+        self.make(self.simd.abs_f32s(self.lanes))
+    }
+
+    #[inline(always)]
+    pub(super) fn sqrt(self) -> Self {
+        self.make(self.simd.sqrt_f32s(self.lanes))
+    }
+
+    /// The size of this number with the sign of another.
+    #[inline(always)]
+    pub(super) fn copysign(self, sign: Self) -> Self {
+        let simd = self.simd;
+        let bit = simd.splat_f32s(-0.0);
+        let size = simd.and_f32s(simd.not_f32s(bit), self.lanes);
+        self.make(simd.or_f32s(size, simd.and_f32s(bit, sign.lanes)))
+    }
+
+    #[inline(always)]
+    pub(super) fn lt(self, other: Self) -> Mask<S> {
+        self.mask(self.simd.less_than_f32s(self.lanes, other.lanes))
+    }
+
+    #[inline(always)]
+    pub(super) fn le(self, other: Self) -> Mask<S> {
+        self.mask(self.simd.less_than_or_equal_f32s(self.lanes, other.lanes))
+    }
+
+    #[inline(always)]
+    pub(super) fn gt(self, other: Self) -> Mask<S> {
+        other.lt(self)
+    }
+
+    #[inline(always)]
+    pub(super) fn ge(self, other: Self) -> Mask<S> {
+        other.le(self)
+    }
+
+    #[inline(always)]
+    pub(super) fn eq(self, other: Self) -> Mask<S> {
+        self.mask(self.simd.equal_f32s(self.lanes, other.lanes))
+    }
+
+    /// The larger number; the other if this one is NaN.
+    #[inline(always)]
+    pub(super) fn max(self, other: Self) -> Self {
+        self.gt(other).select(self, other)
+    }
+
+    /// The smaller number; the other if this one is NaN.
+    #[inline(always)]
+    pub(super) fn min(self, other: Self) -> Self {
+        self.lt(other).select(self, other)
+    }
+}
+
+impl<S: Simd> Mask<S> {
+    /// `yes` where it holds, `no` elsewhere.
+    #[inline(always)]
+    pub(super) fn select(self, yes: Real<S>, no: Real<S>) -> Real<S> {
+        yes.make(self.simd.select_f32s(self.lanes, yes.lanes, no.lanes))
+    }
+
+    /// `yes` where it holds, `no` elsewhere.
+    #[inline(always)]
+    pub(super) fn index(self, yes: Index<S>, no: Index<S>) -> Index<S> {
+        Index {
+            lanes: self.simd.select_u32s(self.lanes, yes.lanes, no.lanes),
+        }
+    }
+
+    /// 1 where it holds, 0 elsewhere, to be read lane by lane.
+    #[inline(always)]
+    pub(super) fn row(self, simd: S) -> Row<f32> {
+        let mut row = Row::<f32>::ZERO;
+        let (yes, no) = (Real::splat(simd, 1.0), Real::splat(simd, 0.0));
+        self.select(yes, no).store(&mut row);
+        row
+    }
+
+    /// Whether it holds in any lane.
+    #[inline(always)]
+    pub(super) fn any(self) -> bool {
+        self.simd.first_true_m32s(self.lanes) < S::F32_LANES
+    }
+}
+
+impl<S: Simd> BitAnd for Mask<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        let lanes = self.simd.and_m32s(self.lanes, other.lanes);
+        Self { lanes, ..self }
+    }
+}
+
+impl<S: Simd> BitOr for Mask<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        let lanes = self.simd.or_m32s(self.lanes, other.lanes);
+        Self { lanes, ..self }
+    }
+}
+
+impl<S: Simd> Not for Mask<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn not(self) -> Self {
+        let lanes = self.simd.not_m32s(self.lanes);
+        Self { lanes, ..self }
+    }
+}
+
+/// The operators between two numbers, and between one and the same number in all lanes.
+macro_rules! operators {
+    ($($operator:ident $method:ident $simd:ident),+ $(,)?) => {$(
+        impl<S: Simd> $operator for Real<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.make(self.simd.$simd(self.lanes, other.lanes))
+            }
+        }
+
+        impl<S: Simd> $operator<f32> for Real<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: f32) -> Self {
+                self.$method(self.all(other))
+            }
+        }
+
+        impl<S: Simd> $operator<Real<S>> for f32 {
+            type Output = Real<S>;
+
+            #[inline(always)]
+            fn $method(self, other: Real<S>) -> Real<S> {
+                other.all(self).$method(other)
+            }
+        }
+    )+};
+}
+
+operators! {
+    Add add add_f32s,
+    Sub sub sub_f32s,
+    Mul mul mul_f32s,
+    Div div div_f32s,
+}
+
+impl<S: Simd> Neg for Real<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.make(self.simd.neg_f32s(self.lanes))
+    }
+}
+
+/// A vector a lane.
+#[derive(Clone, Copy)]
+pub(super) struct Vector<S: Simd> {
+    pub(super) x: Real<S>,
+    pub(super) y: Real<S>,
+    pub(super) z: Real<S>,
+}
+
+impl<S: Simd> Vector<S> {
+    /// The same vector in all lanes.
+    #[inline(always)]
+    pub(super) fn splat(simd: S, vector: Vec3A) -> Self {
+        Self {
+            x: Real::splat(simd, vector.x),
+            y: Real::splat(simd, vector.y),
+            z: Real::splat(simd, vector.z),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn load(simd: S, [x, y, z]: &[Row<f32>; 3]) -> Self {
+        Self {
+            x: Real::load(simd, x),
+            y: Real::load(simd, y),
+            z: Real::load(simd, z),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn store(self, [x, y, z]: &mut [Row<f32>; 3]) {
+        self.x.store(x);
+        self.y.store(y);
+        self.z.store(z);
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(Real<S>, Real<S>) -> Real<S>) -> Self {
+        Self {
+            x: f(self.x, other.x),
+            y: f(self.y, other.y),
+            z: f(self.z, other.z),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn dot(self, other: Self) -> Real<S> {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// The components from that of `axis` on, in turn.
+    #[inline(always)]
+    pub(super) fn turned(self, axis: usize) -> Self {
+        let Self { x, y, z } = self;
+        match axis {
+            0 => self,
+            1 => Self { x: y, y: z, z: x },
+            _ => Self { x: z, y: x, z: y },
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn length(self) -> Real<S> {
+        self.dot(self).sqrt()
+    }
+
+    #[inline(always)]
+    pub(super) fn max_element(self) -> Real<S> {
+        self.x.max(self.z).max(self.y.max(self.z))
+    }
+}
+
+impl<S: Simd> Mask<S> {
+    /// `yes` where it holds, `no` elsewhere.
+    #[inline(always)]
+    pub(super) fn choose(self, yes: Vector<S>, no: Vector<S>) -> Vector<S> {
+        yes.zip(no, |yes, no| self.select(yes, no))
+    }
+}
+
+impl<S: Simd> Add for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+}
+
+impl<S: Simd> AddAssign for Vector<S> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<S: Simd> Sub for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+}
+
+impl<S: Simd> Mul for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+}
+
+impl<S: Simd> MulAssign for Vector<S> {
+    #[inline(always)]
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}
+
+impl<S: Simd> Mul<Real<S>> for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: Real<S>) -> Self {
+        Self {
+            x: self.x * factor,
+            y: self.y * factor,
+            z: self.z * factor,
+        }
+    }
+}
+
+impl<S: Simd> Div<Real<S>> for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, divisor: Real<S>) -> Self {
+        Self {
+            x: self.x / divisor,
+            y: self.y / divisor,
+            z: self.z / divisor,
+        }
+    }
+}
+
+impl<S: Simd> Neg for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self {
+            x: -self.x,
+            y: -self.y,
+            z: -self.z,
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! Triangle meshes.
+
+use glam::{Vec2, Vec3A};
+
+use super::{Flat, Shape};
+use crate::Error;
+use crate::path::{Shading, Surface};
+
+/// Triangles that share vertices, with or without normals and texture coordinates at them.
+///
+/// Triangles without area can neither be hit nor shine: they are [dropped](Self::dropped).
+///
+/// ```
+/// use estimand::path::shape::Mesh;
+///
+/// let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = Mesh::new(positions, vec![[0, 1, 2], [0, 2, 3], [1, 1, 2]])?;
+/// assert_eq!((mesh.triangles().len(), mesh.dropped()), (2, 1));
+/// # Ok::<(), estimand::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    positions: Vec<[f32; 3]>,
+    /// At each vertex, or none at all.
+    normals: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+    triangles: Vec<[u32; 3]>,
+    dropped: usize,
+    /// Whether the outer side of the surface is that of clockwise corners.
+    turned: bool,
+}
+
+impl Mesh {
+    /// The mesh of some triangles, each given by the indices of its corners, counter-clockwise when seen from outside.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for an index without a vertex, and for a corner that is not finite.
+    pub fn new(positions: Vec<[f32; 3]>, triangles: Vec<[u32; 3]>) -> Result<Self, Error> {
+        let count = triangles.len();
+        let mut kept = triangles;
+        let mut bad = None;
+        kept.retain(|corners| {
+            let corner = |index: u32| positions.get(index as usize).copied();
+            let [Some(a), Some(b), Some(c)] = corners.map(corner) else {
+                bad.get_or_insert_with(|| {
+                    let given = format!("{corners:?} of {}", positions.len());
+                    Error::refused("corners of a triangle", "indices of vertices", given)
+                });
+                return false;
+            };
+            let points = [a, b, c];
+            if !points.iter().flatten().all(|x| x.is_finite()) {
+                bad.get_or_insert_with(|| {
+                    Error::refused("triangle", "finite", format!("{points:?}"))
+                });
+                return false;
+            }
+            Flat::triangle(points).is_ok()
+        });
+        match bad {
+            Some(error) => Err(error),
+            None => Ok(Self {
+                dropped: count - kept.len(),
+                positions,
+                normals: Vec::new(),
+                uvs: Vec::new(),
+                triangles: kept,
+                turned: false,
+            }),
+        }
+    }
+
+    /// The same with a normal at each vertex, interpolated between them. They need not have length 1.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for another number of them than there are vertices, and for one that is not finite.
+    pub fn with_normals(mut self, normals: Vec<[f32; 3]>) -> Result<Self, Error> {
+        self.one_each("normals", normals.len())?;
+        finite("normal", &normals)?;
+        self.normals = normals;
+        Ok(self)
+    }
+
+    /// The same with texture coordinates at each vertex, interpolated between them.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for another number of them than there are vertices, and for one that is not finite.
+    pub fn with_uvs(mut self, uvs: Vec<[f32; 2]>) -> Result<Self, Error> {
+        self.one_each("texture coordinates", uvs.len())?;
+        finite("texture coordinate", &uvs)?;
+        self.uvs = uvs;
+        Ok(self)
+    }
+
+    /// The same surface with the outer side, and normals, on the other side.
+    #[must_use]
+    pub fn turned(mut self) -> Self {
+        self.turned = !self.turned;
+        self
+    }
+
+    /// The corners of the triangles, as indices of vertices.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// How many triangles had no area.
+    pub fn dropped(&self) -> usize {
+        self.dropped
+    }
+
+    /// The triangle as a shape of its own.
+    pub(in crate::path) fn flat(&self, triangle: usize) -> Flat {
+        let corners = self.triangles[triangle].map(|index| self.positions[index as usize]);
+        let flat = Flat::triangle(corners).expect("triangles without area are dropped");
+        if self.turned { flat.turned() } else { flat }
+    }
+
+    /// The texture coordinates at the corners of a triangle.
+    pub(in crate::path) fn uvs(&self, triangle: usize) -> [Vec2; 3] {
+        if self.uvs.is_empty() {
+            return [Vec2::ZERO, Vec2::X, Vec2::Y];
+        }
+        self.triangles[triangle].map(|index| Vec2::from(self.uvs[index as usize]))
+    }
+
+    /// The parametrisation at a point of a triangle, of which `flat` is the shape.
+    pub(in crate::path) fn shading(
+        &self,
+        triangle: usize,
+        flat: &Flat,
+        surface: &Surface,
+    ) -> Shading {
+        let plain = flat.shading(surface);
+        let [s, t] = plain.uv.to_array();
+        let mut shading = plain;
+        if !self.normals.is_empty() {
+            let [a, b, c] =
+                self.triangles[triangle].map(|index| Vec3A::from(self.normals[index as usize]));
+            let side = if self.turned { -1.0 } else { 1.0 };
+            let normal = (a * (1.0 - s - t) + (b * s + c * t)) * side;
+            // Normals that cancel one another say nothing.
+            shading.normal = normal.try_normalize().unwrap_or(plain.normal);
+        }
+        if !self.uvs.is_empty() {
+            let [a, b, c] = self.uvs(triangle);
+            let (first, second) = (b - a, c - a);
+            shading.uv = a + first * s + second * t;
+            let area = first.perp_dot(second);
+            let inverse = if area == 0.0 { 0.0 } else { area.recip() };
+            shading.du = (plain.du * second.y - plain.dv * first.y) * inverse;
+            shading.dv = (plain.dv * first.x - plain.du * second.x) * inverse;
+        }
+        shading
+    }
+
+    fn one_each(&self, name: &'static str, count: usize) -> Result<(), Error> {
+        if count == self.positions.len() {
+            return Ok(());
+        }
+        Err(Error::refused(
+            name,
+            "one for each vertex",
+            format_args!("{count} for {}", self.positions.len()),
+        ))
+    }
+}
+
+fn finite<const N: usize>(name: &'static str, vectors: &[[f32; N]]) -> Result<(), Error> {
+    match vectors
+        .iter()
+        .find(|vector| !vector.iter().all(|x| x.is_finite()))
+    {
+        None => Ok(()),
+        Some(vector) => Err(Error::refused(name, "finite", format_args!("{vector:?}"))),
+    }
+}

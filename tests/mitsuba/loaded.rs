@@ -1,0 +1,218 @@
+//! Scenes that are loaded: as the smallest type that is enough, which gives the same picture as the general one.
+
+use estimand::mitsuba::{Instance, Loaded, read};
+use estimand::points::{Independent, pixel};
+use glam::DVec3;
+
+use crate::files::Folder;
+
+/// The mean over the picture of a scene of 8 by 8 pixels, its standard error, and the mean number of coordinates of a path.
+struct Seen {
+    mean: DVec3,
+    std_error: DVec3,
+    coordinates: f64,
+    left_out: Vec<String>,
+}
+
+const COUNT: u64 = 256;
+
+fn see(scene: &str, instance: Instance) -> Seen {
+    let folder = Folder::new();
+    let file = folder.scene(&format!(
+        r#"<sensor type="perspective"><float name="fov" value="50"/>
+        <transform name="to_world"><lookat origin="0 1 -5" target="0 0 0" up="0 1 0"/></transform>
+        <film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/>
+        <rfilter type="box"/></film></sensor>{scene}"#
+    ));
+    let loaded = read(&file, &[])
+        .and_then(|description| description.load(instance))
+        .unwrap();
+    let Loaded {
+        picture,
+        size,
+        left_out,
+    } = loaded;
+    assert_eq!(size, [8, 8]);
+    let (mut sum, mut squares, mut coordinates) = (DVec3::ZERO, DVec3::ZERO, 0);
+    for y in 0..8 {
+        for x in 0..8 {
+            // Different points for the two instances: they are two estimates of the same.
+            let seed = pixel::seed([x, y], instance as u64);
+            let points = Independent::new(seed);
+            // One value for each half of the points gives the error.
+            let half = |seed: u64| {
+                let estimate = picture.average([x, y], size, &Independent::new(seed), COUNT);
+                estimate.unwrap().mean
+            };
+            let [a, b] = [half(seed), half(!seed)];
+            sum += 0.5 * (a + b);
+            squares += 0.25 * (a - b) * (a - b);
+            coordinates += picture.coordinates([x, y], size, &points, 0);
+        }
+    }
+    Seen {
+        mean: sum / 64.0,
+        std_error: squares.map(f64::sqrt) / 64.0,
+        coordinates: coordinates as f64 / 64.0,
+        left_out,
+    }
+}
+
+const WHITE: &str = r#"<bsdf type="twosided"><bsdf type="diffuse"/></bsdf>"#;
+
+/// Five families of scenes; the means of three channels each differ by at most five standard errors of independent estimates.
+/// The errors are those of 64 pixels with one degree of freedom each, about those of a normal distribution: a false
+/// alarm has a probability of about 6e-7 a channel, 1e-5 in all.
+#[test]
+fn the_smallest_instance_gives_the_picture_of_the_general_one() {
+    let ball = format!(r#"<shape type="sphere">{WHITE}</shape>"#);
+    let lamp = r#"<shape type="rectangle"><transform name="to_world"><rotate x="1" angle="90"/><translate y="3"/></transform>
+        <emitter type="area"><rgb name="radiance" value="8 4 2"/></emitter></shape>"#;
+    let tiles = r#"<shape type="sphere"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance"/></bsdf></shape>"#;
+    let gold = r#"<shape type="sphere"><bsdf type="roughconductor"><string name="material" value="Au"/></bsdf></shape>"#;
+    let spot = r#"<emitter type="point"><point name="position" value="0 3 -3"/><rgb name="intensity" value="20"/></emitter>"#;
+    for (scene, expected) in [
+        (
+            format!("{ball}{lamp}"),
+            vec![
+                "textures",
+                "laws",
+                "lights without size",
+                "environment",
+                "lens",
+                "instances",
+            ],
+        ),
+        (
+            format!(r#"{ball}<emitter type="constant"/>"#),
+            vec![
+                "textures",
+                "laws",
+                "shapes that emit",
+                "lights without size",
+                "lens",
+                "instances",
+            ],
+        ),
+        (
+            format!("{gold}{lamp}"),
+            vec![
+                "textures",
+                "lights without size",
+                "environment",
+                "lens",
+                "instances",
+            ],
+        ),
+        (
+            format!("{tiles}{spot}"),
+            vec!["shapes that emit", "lens", "instances"],
+        ),
+        (format!("{tiles}{spot}{lamp}"), vec!["lens", "instances"]),
+    ] {
+        let small = see(&scene, Instance::Smallest);
+        let general = see(&scene, Instance::General);
+        assert!(small.mean.min_element() > 0.0);
+        let error = (small.std_error * small.std_error + general.std_error * general.std_error)
+            .map(f64::sqrt);
+        let off = (small.mean - general.mean).abs();
+        assert!(
+            off.cmple(5.0 * error).all(),
+            "{scene}: {} {}",
+            small.mean,
+            general.mean
+        );
+        assert!(small.coordinates <= general.coordinates, "{scene}");
+        assert!(general.left_out.is_empty(), "{:?}", general.left_out);
+        assert_eq!(small.left_out.len(), expected.len(), "{:?}", small.left_out);
+        for (part, expected) in small.left_out.iter().zip(expected) {
+            assert!(part.contains(expected), "{part}");
+        }
+    }
+}
+
+/// A diffuse ball in a constant environment: two coordinates for the film, and where a path hits the ball two for its next
+/// direction, which leaves.
+#[test]
+fn absent_parts_draw_no_coordinates() {
+    let ball = format!(
+        r#"<integrator type="path"/><shape type="sphere"><float name="radius" value="50"/>{WHITE}</shape>
+        <emitter type="constant"/>"#
+    );
+    // The camera is inside, and no path leaves: 4 vertices without roulette, 2 + 2 each, then 3 each.
+    let inside = ball.replace(
+        "<integrator type=\"path\"/>",
+        r#"<integrator type="path"><integer name="max_depth" value="4"/></integrator>"#,
+    );
+    assert_eq!(
+        see(&inside, Instance::Smallest).coordinates,
+        2.0 + 2.0 * 3.0
+    );
+}
+
+#[test]
+fn what_contributes_nothing_is_left_out() {
+    let scene = format!(
+        r#"<shape type="sphere">{WHITE}</shape><emitter type="constant"/>
+        <emitter type="point"><rgb name="intensity" value="0"/></emitter>
+        <shape type="rectangle"><emitter type="area"><rgb name="radiance" value="0"/></emitter></shape>
+        <bsdf type="conductor" id="spare"/>"#
+    );
+    let left_out = see(&scene, Instance::Smallest).left_out;
+    for expected in [
+        "an emitter without power",
+        "the light of <shape type=\"rectangle\">",
+        "<bsdf type=\"conductor\">",
+        "shapes that emit light",
+        "lights without size",
+    ] {
+        assert!(
+            left_out.iter().any(|part| part.contains(expected)),
+            "{expected}: {left_out:?}"
+        );
+    }
+}
+
+#[test]
+fn triangles_without_area_are_counted() {
+    let folder = Folder::new();
+    folder.write(
+        "mesh.obj",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\nf 2 2 2\n",
+    );
+    let file = folder.scene(
+        r#"<sensor type="perspective"/><shape type="obj"><string name="filename" value="mesh.obj"/></shape>"#,
+    );
+    let loaded = read(&file, &[]).unwrap().load(Instance::Smallest).unwrap();
+    assert!(
+        loaded
+            .left_out
+            .contains(&"2 triangles without area".to_owned())
+    );
+}
+
+#[test]
+fn what_the_tracer_lacks_is_told() {
+    let folder = Folder::new();
+    for (scene, expected) in [
+        (
+            r#"<integrator type="path"><integer name="max_depth" value="0"/></integrator>"#,
+            "at least 1",
+        ),
+        (
+            r#"<shape type="sphere"><transform name="to_world"><scale x="2"/></transform></shape>"#,
+            "scaled alike in all directions",
+        ),
+        (
+            r#"<integrator type="direct"><integer name="emitter_samples" value="0"/></integrator><emitter type="point"/>"#,
+            "lights without size would be missed",
+        ),
+    ] {
+        let file = folder.scene(&format!(r#"<sensor type="perspective"/>{scene}"#));
+        let error = read(file, &[])
+            .unwrap()
+            .load(Instance::Smallest)
+            .unwrap_err();
+        assert!(error.to_string().contains(expected), "{error}");
+    }
+}

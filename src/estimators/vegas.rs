@@ -12,6 +12,7 @@ use crate::{
 };
 
 mod adaptation;
+mod grid;
 
 use adaptation::{Adaptation, Pass};
 

@@ -5,80 +5,12 @@ use core::ops::Range;
 use rand::rngs::Xoshiro256PlusPlus;
 
 use super::super::monte_carlo::seeded;
+use super::grid::{Axis, Grid, advance};
 use crate::block::Block;
 use crate::integrands::{Bin, ImportanceMap};
 use crate::points::{Independent, PointSet};
 use crate::stratum::{Stratum, apportion};
 use crate::{Cursor, Error, Integrand, Sampler, Stream, Value, hash, reduce};
-
-/// The strata: a grid of cells, equal along each axis.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Grid {
-    /// How many cells each axis has. The strata are numbered with the first axis fastest.
-    cells: Vec<u64>,
-    strata: usize,
-}
-
-impl Grid {
-    /// As many cells as leave eight points to each: the same along all axes, or one more along the first ones.
-    fn new(dimensions: usize, count: u64) -> Self {
-        let most = (count / 8).clamp(1, 1 << 16);
-        let mut cells = vec![1; dimensions];
-        let mut strata = 1;
-        for axis in (0..dimensions).cycle() {
-            let more = strata / cells[axis] * (cells[axis] + 1);
-            if more > most {
-                break;
-            }
-            cells[axis] += 1;
-            strata = more;
-        }
-        Self {
-            cells,
-            strata: usize::try_from(strata).expect("at most 2^16"),
-        }
-    }
-
-    fn evenly(&self, count: u64) -> Vec<u64> {
-        apportion(&vec![1.0; self.strata], count)
-    }
-
-    /// The place of `stratum`, under a map of `bins` bins.
-    fn place(&self, stratum: usize, bins: usize) -> Vec<Axis> {
-        let mut rest = stratum as u64;
-        let axis = |&cells: &u64| {
-            let cell = rest % cells;
-            rest /= cells;
-            Axis {
-                cell: cell as f64,
-                cells: cells as f64,
-                scale: bins as f64 / cells as f64,
-            }
-        };
-        self.cells.iter().map(axis).collect()
-    }
-}
-
-/// Where a stratum is along an axis.
-#[derive(Clone, Copy)]
-struct Axis {
-    cell: f64,
-    cells: f64,
-    /// Bins a cell.
-    scale: f64,
-}
-
-/// From the place of a stratum to that of the next.
-fn advance(place: &mut [Axis]) {
-    for axis in place {
-        axis.cell += 1.0;
-        if axis.cell < axis.cells {
-            return;
-        }
-        axis.cell = 0.0;
-    }
-}
 
 /// What is adapted from iteration to iteration.
 #[derive(Clone, Debug, PartialEq)]

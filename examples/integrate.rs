@@ -25,6 +25,7 @@ use sets::{Choice, Scramble, Set};
 
 /// Integrates a test integrand over the unit cube and says how far the result can be trusted.
 #[derive(Parser)]
+#[command(allow_negative_numbers = true)]
 struct Arguments {
     /// What to integrate
     #[arg(value_enum)]
@@ -32,7 +33,8 @@ struct Arguments {
     /// In how many dimensions
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     dims: u32,
-    /// The points: plain, vegas, or a set: independent, stratified, n-rooks, van-der-corput, halton, hammersley, sobol
+    /// The points: plain, vegas, or a set: independent, stratified, n-rooks, van-der-corput, halton, hammersley, sobol,
+    /// faure, lattice, kronecker, multi-jittered, orthogonal-array
     #[arg(long, default_value = "sobol", value_parser = points)]
     points: Points,
     /// How a set is randomised, if not in the way that suits it
@@ -132,6 +134,11 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
             let plain = MonteCarlo::new(arguments.count, arguments.seed).non_finite(rule);
             stopped(arguments, plain, &problem)?
         }
+        Points::Vegas if arguments.reject => {
+            return Err(
+                "vegas stops at values that are not finite: it cannot leave them out".into(),
+            );
+        }
         Points::Vegas => {
             let vegas = Vegas::new(problem.dims, arguments.count, arguments.seed)?;
             stopped(arguments, vegas, &problem)?
@@ -220,7 +227,7 @@ fn report(
         "interval": interval.map(|interval| [interval.low, interval.high]),
         "level": arguments.level,
         "kind": estimate.error_bar.to_string(),
-        "requested": estimate.requested,
+        "requested": arguments.count,
         "used": estimate.used,
         "rejected": estimate.rejected,
         "seconds": estimate.seconds,
@@ -248,14 +255,16 @@ fn report(
     }
     if let Some(truth) = problem.integral() {
         let off = estimate.mean - truth;
-        println!(
-            "exact        {truth:.12e}  (error {off:.1e}, relative {:.1e})",
-            off / truth
-        );
+        let relative = if truth == 0.0 {
+            String::new()
+        } else {
+            format!(", relative {:.1e}", off / truth)
+        };
+        println!("exact        {truth:.12e}  (error {off:.1e}{relative})");
     }
     println!(
         "evaluations  {} of {} requested, {} rejected",
-        estimate.used, estimate.requested, estimate.rejected
+        estimate.used, arguments.count, estimate.rejected
     );
     println!(
         "stopped by   {} after {:.3} s",

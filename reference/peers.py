@@ -129,7 +129,7 @@ def picture(task):
         settings["max_depth"] = task["depth"]
     runs = []
     scene = mitsuba.load_file(str(SCENES / task["scene"]), **settings)
-    samplers = {f"Mitsuba {variant[:4]}": scene.sensors()[0]}
+    samplers = {f"Mitsuba 3, {variant[:variant.index('_')]}": scene.sensors()[0]}
     for spp in task["spp"]:
         for name, sensor in samplers.items():
             render = lambda seed: np.array(  # noqa: E731

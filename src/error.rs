@@ -33,6 +33,11 @@ pub enum Error {
         /// How many values were rejected.
         rejected: u64,
     },
+    /// It was stopped before there was an estimate.
+    TooEarly {
+        /// How many evaluations were made by then.
+        used: u64,
+    },
     /// Two replicates have the same points, so that their spread says nothing about the error.
     IdenticalReplicates {
         /// The first of the two.
@@ -77,6 +82,12 @@ impl fmt::Display for Error {
                 write!(
                     f,
                     "all {rejected} values of the integrand were NaN or infinite"
+                )
+            }
+            Self::TooEarly { used } => {
+                write!(
+                    f,
+                    "stopped after {used} evaluations, before there was an estimate"
                 )
             }
             Self::IdenticalReplicates { first, second } => write!(

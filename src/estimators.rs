@@ -11,6 +11,9 @@
 //! | [`Median`] | the same | order statistics of the replicates |
 //! | [`Until`] | another estimator's, until a rule stops it | the other estimator's |
 //!
+//! What their intervals are worth, measured: [`coverage`] has the part of many runs whose interval held the integral, and
+//! [`stability`] what becomes of stiff and extreme integrands, with the estimator to use instead where one fails.
+//!
 //! Writing your own: implement [`Estimator`](crate::Estimator), as its example shows.
 
 mod average;
@@ -30,3 +33,11 @@ pub use replicated::Replicated;
 pub use strata::Strata;
 pub use until::{Progress, Until};
 pub use vegas::{Adapted, Iteration, Vegas, VegasState};
+
+#[cfg(doc)]
+#[doc = include_str!("../docs/coverage.md")]
+pub mod coverage {}
+
+#[cfg(doc)]
+#[doc = include_str!("../docs/stability.md")]
+pub mod stability {}

@@ -5,7 +5,8 @@ use crate::warning::Warning;
 use crate::{Moments, Value};
 
 /// What the points of a stratum have given.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Stratum<V> {
     pub(crate) moments: Moments<V>,
     pub(crate) low: V,

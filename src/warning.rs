@@ -36,6 +36,12 @@ pub enum Warning {
         /// How many there were.
         replicates: u64,
     },
+    /// The replicates around a median take few values, as counts of a rare event do: their median is not their mean, and
+    /// the interval holds the median.
+    Tied {
+        /// How many values the replicates take.
+        distinct: u64,
+    },
     /// Values that were not finite were left out: the estimate is the mean over the rest.
     Rejected {
         /// How many.
@@ -73,6 +79,10 @@ impl fmt::Display for Warning {
                 write!(f, "only {count} independent values")
             }
             Self::FewReplicates { replicates } => write!(f, "only {replicates} replicates"),
+            Self::Tied { distinct } => write!(
+                f,
+                "the replicates take only {distinct} values, whose median is not their mean"
+            ),
             Self::Rejected { rejected } => {
                 write!(f, "{rejected} values were not finite and left out")
             }

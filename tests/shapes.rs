@@ -10,7 +10,7 @@ use estimand::path::light::{AreaLights, Constant, NoEnvironment, NoLight};
 use estimand::path::sensor::Pinhole;
 use estimand::path::shape::{Cylinder, Disk, Flat, Mesh, Primitive, Shape, Sphere, cuboid};
 use estimand::path::texture::{Bitmap, Filter, Texture};
-use estimand::path::{Instances, Object, Paths, Ray, Scene, Surface, View};
+use estimand::path::{Instances, Object, Paths, Ray, Scene, Segment, Surface, View};
 use estimand::points::{HashedOwen, PointSet, Sobol};
 use estimand::{Average, Sampler};
 use glam::{Affine3A, Mat3A, Quat, Vec2, Vec3, Vec3A};
@@ -515,4 +515,74 @@ fn a_picture_shines_where_it_is_bright() {
     }
     let negative = Bitmap::new(1, 1, vec![-1.0]).unwrap();
     assert!(floor().emitting_picture(negative.into()).is_err());
+}
+
+#[test]
+fn hidden_lights_light_but_are_not_seen() {
+    let floor = Flat::parallelogram([-2.0, 0.0, -2.0], [0.0, 0.0, 4.0], [4.0, 0.0, 0.0]).unwrap();
+    let lamp = Sphere::new([0.0, 1.0, 0.0], 0.3).unwrap();
+    let black = Lambertian::new([0.0; 3]).unwrap();
+    let render = |paths, from, to| {
+        let view = View::<Lambertian, AreaLights, _, _> {
+            scene: Scene::new(
+                vec![
+                    Object::new([floor], white()),
+                    Object::new([lamp], black).emitting([5.0; 3]).unwrap(),
+                ],
+                Constant::new([0.25; 3]).unwrap(),
+            )
+            .unwrap(),
+            sensor: Pinhole::look_at(from, to, [0.0, 1.0, 0.0], 0.1, 1.0).unwrap(),
+            filter: BoxFilter,
+            paths,
+        };
+        view.render([1, 1], 1, |seed| {
+            Average::new(
+                Sobol::new(16).unwrap().scrambled(HashedOwen { seed }),
+                1 << 12,
+            )
+        })
+        .unwrap()
+        .mean()
+        .x
+    };
+    let (all, hiding) = (Paths::default(), Paths::default().hiding_lights());
+    // Through the lamp at the floor: what is seen from below the lamp.
+    let (above, below, target) = ([0.0, 2.0, 0.1], [0.0, 0.6, 0.03], [0.0; 3]);
+    assert_eq!(render(all, above, target), 5.0);
+    let (through, beyond) = (render(hiding, above, target), render(all, below, target));
+    assert!((through / beyond - 1.0).abs() < 1e-3, "{through} {beyond}");
+    assert!(through > 0.1);
+    // Through the lamp, or past it, at the sky.
+    for target in [[0.0, 1.1, 0.0], [0.0, 1.9, 0.0]] {
+        assert_eq!(render(hiding, [0.0, 1.0, 2.0], target), 0.0);
+    }
+    assert_eq!(render(all, [0.0, 1.0, 2.0], [0.0, 1.9, 0.0]), 0.25);
+}
+
+#[test]
+fn rays_along_the_axes_meet_a_mesh_whatever_the_sign_of_their_zeros() {
+    let scene: Bare = Scene::new(vec![Object::mesh(pyramid(), white())], NoEnvironment).unwrap();
+    for zero in [0.0, -0.0] {
+        for (origin, direction) in [
+            ([0.1, 0.2, -2.0], [zero, zero, 1.0]),
+            ([0.1, 0.2, 4.0], [zero, zero, -1.0]),
+            ([-3.0, 0.1, 0.2], [1.0, zero, zero]),
+            ([0.1, 3.0, 0.2], [zero, -1.0, zero]),
+        ] {
+            let ray = Ray {
+                origin: Vec3A::from(origin),
+                direction: Vec3A::from(direction),
+            };
+            let here = Surface {
+                point: ray.origin,
+                normal: ray.direction,
+                margin: 0.0,
+                detail: (),
+            };
+            assert!(scene.meet(&ray).is_some(), "{ray:?}");
+            let way = Segment::along(&here, ray.direction);
+            assert!(scene.occluded(&way), "{ray:?}");
+        }
+    }
 }

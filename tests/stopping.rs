@@ -81,26 +81,42 @@ proptest! {
     }
 }
 
+/// Saves and restores the state between any two pieces of work.
 #[cfg(feature = "serde")]
-#[test]
-fn a_saved_state_goes_on_as_if_it_had_not_been_saved() {
-    let estimator = Replicated::new(4, 3000, Independent::new).non_finite(NonFinite::Reject);
-    let mut state = estimator.start().unwrap();
-    for cut in [1, 700, 5000, 11_111, 12_000] {
+fn saved_and_restored<E: Progressive>(estimator: &E, cuts: &[u64])
+where
+    E::State<[f64; 2]>: serde::Serialize + serde::de::DeserializeOwned + PartialEq,
+{
+    let mut state = estimator.start::<[f64; 2]>().unwrap();
+    for &cut in cuts {
         estimator.grow(&mut state, &Walk, cut).unwrap();
         let saved = serde_json::to_string(&state).unwrap();
         let restored = serde_json::from_str(&saved).unwrap();
-        assert_eq!(state, restored);
+        assert!(state == restored, "at {cut}");
         state = restored;
     }
     let estimate = estimator.conclude(&state).unwrap();
     assert_eq!(estimate, estimator.estimate(&Walk).unwrap());
     let saved = serde_json::to_string(&estimate).unwrap();
-    assert_eq!(
-        estimate,
-        serde_json::from_str(&saved).unwrap(),
-        "estimates can be saved too"
-    );
+    let restored = serde_json::from_str(&saved).unwrap();
+    assert_eq!(estimate, restored, "estimates can be saved too");
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn a_saved_state_goes_on_as_if_it_had_not_been_saved() {
+    let cuts = [1, 700, 5000, 11_111, u64::MAX];
+    saved_and_restored(&MonteCarlo::new(12_345, 3), &cuts);
+    saved_and_restored(&Average::new(Independent::new(3), 12_345), &cuts);
+    let rooks = Replicated::new(4, 3000, |seed| NRooks::new(3000, seed).unwrap());
+    saved_and_restored(&rooks, &cuts);
+    let replicated = Replicated::new(4, 3000, Independent::new).non_finite(NonFinite::Reject);
+    saved_and_restored(&replicated, &cuts);
+    saved_and_restored(&replicated.median(), &cuts);
+    saved_and_restored(&Vegas::new(2, 12_345, 3).unwrap(), &cuts);
+    // Iterations of several parts, cut within.
+    let long = Vegas::new(2, 30_000, 3).unwrap().iterations(2).unwrap();
+    saved_and_restored(&long, &[1, 5000, 9000, 20_000, u64::MAX]);
 }
 
 #[test]

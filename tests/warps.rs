@@ -18,8 +18,9 @@ use estimand::warp::{
     Piecewise2d, Sphere, SphericalRectangle, SphericalTriangle, Tent, Triangle, Warp,
 };
 
-const EDGES: [f64; 6] = [
+const EDGES: [f64; 7] = [
     0.0,
+    5e-324,
     f64::MIN_POSITIVE,
     f64::EPSILON / 2.0,
     0.5,

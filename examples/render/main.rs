@@ -1,5 +1,6 @@
 //! Renders scene files of Mitsuba 3.
 
+mod adaptive;
 mod checkpoint;
 mod output;
 mod plan;
@@ -19,7 +20,7 @@ use estimand::mitsuba::{self, Instance};
 use estimand::path::Image;
 
 use checkpoint::Checkpoint;
-use output::Report;
+use output::{Report, Work};
 use plan::Plan;
 use points::Points;
 use render::Job;
@@ -66,6 +67,10 @@ struct Arguments {
     /// A picture to compare with
     #[arg(long, value_name = "FILE.exr")]
     reference: Option<PathBuf>,
+    /// Takes more samples where the picture varies more: independent ones, --spp of them in the mean. The picture is rendered at
+    /// once: Ctrl-C ends it with nothing written
+    #[arg(long, conflicts_with_all = ["time", "noise", "points", "replicates", "checkpoint"])]
+    adaptive: bool,
     /// Loads the scene as the type that can render every scene, instead of the smallest that is enough
     #[arg(long)]
     general: bool,
@@ -102,7 +107,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         .as_ref()
         .map(Image::read_exr)
         .transpose()?;
-    ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed))?;
+    if !arguments.adaptive {
+        ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed))?;
+    }
 
     let start = Instant::now();
     let overrides: Vec<_> = arguments
@@ -128,10 +135,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         }
     }
 
-    let plan = Plan::new(
-        arguments,
-        description.sensors[0].sampler.sample_count.into(),
-    );
+    let of_the_file = description.sensors[0].sampler.sample_count.into();
+    let plan = Plan::new(arguments, of_the_file);
     let checkpoint = arguments.checkpoint.as_deref().map(|file| {
         Checkpoint::new(
             file,
@@ -144,19 +149,24 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let job = Job {
         picture: &*loaded.picture,
         size: loaded.size,
-        points: arguments.points,
+        points: match arguments.adaptive {
+            true => Points::Independent,
+            false => arguments.points,
+        },
         seed: arguments.seed,
         plan,
         checkpoint: checkpoint.as_ref(),
         stop: &STOP,
     };
-    let state = job.run()?;
+    let work = match arguments.adaptive {
+        true => adaptive::run(&job, arguments.spp.unwrap_or(of_the_file))?,
+        false => Work::of(&job.run()?)?,
+    };
     output::write(
         arguments,
         &Report {
             job: &job,
-            state: &state,
-            image: state.image()?,
+            work,
             reference: reference.as_ref(),
             left_out: &loaded.left_out,
             load_seconds,

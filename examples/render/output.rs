@@ -13,11 +13,33 @@ use crate::state::State;
 /// What there is to be written.
 pub(crate) struct Report<'a> {
     pub(crate) job: &'a Job<'a>,
-    pub(crate) state: &'a State,
-    pub(crate) image: Image,
+    pub(crate) work: Work,
     pub(crate) reference: Option<&'a Image>,
     pub(crate) left_out: &'a [String],
     pub(crate) load_seconds: f64,
+}
+
+/// A picture and what it took.
+pub(crate) struct Work {
+    pub(crate) image: Image,
+    pub(crate) paths: u64,
+    /// How many of the paths were not finite and are left out.
+    pub(crate) rejected: u64,
+    pub(crate) seconds: f64,
+    /// The error relative to the mean, as estimated.
+    pub(crate) noise: Option<f64>,
+}
+
+impl Work {
+    pub(crate) fn of(state: &State) -> Result<Self, estimand::Error> {
+        Ok(Self {
+            image: state.image()?,
+            paths: state.paths,
+            rejected: state.rejected,
+            seconds: state.seconds,
+            noise: state.noise(),
+        })
+    }
 }
 
 /// That pictures have names of formats that can be written.
@@ -48,12 +70,13 @@ pub(crate) fn write(arguments: &Arguments, report: &Report<'_>) -> Result<(), Bo
     }
     for file in &pictures {
         match is(file, "png") {
-            true => report.image.write_png(file)?,
-            false => report.image.write_exr(file)?,
+            true => report.work.image.write_png(file)?,
+            false => report.work.image.write_exr(file)?,
         }
     }
     if let Some(file) = &arguments.std_error {
         let errors = report
+            .work
             .image
             .std_error()
             .ok_or("there are no standard errors: they need two replicates")?;
@@ -78,9 +101,8 @@ fn figures(
     arguments: &Arguments,
     report: &Report<'_>,
 ) -> Result<serde_json::Value, Box<dyn Error>> {
-    let Report {
-        job, state, image, ..
-    } = report;
+    let Report { job, work, .. } = report;
+    let image = &work.image;
     let rmse = report.reference.map(|reference| image.rmse(reference));
     let relative = report
         .reference
@@ -90,36 +112,36 @@ fn figures(
         "scene": arguments.scene,
         "width": job.size[0],
         "height": job.size[1],
-        "spp": state.paths as f64 / pixels,
-        "paths": state.paths,
-        "seconds": state.seconds,
+        "spp": work.paths as f64 / pixels,
+        "paths": work.paths,
+        "seconds": work.seconds,
         "load_seconds": report.load_seconds,
-        "paths_per_second": state.paths as f64 / state.seconds,
+        "paths_per_second": work.paths as f64 / work.seconds,
         "points": job.points.to_string(),
         "left_out": report.left_out,
         "coordinates_per_path": job.coordinates_per_path(),
-        "rejected": state.rejected,
-        "noise": state.noise(),
+        "rejected": work.rejected,
+        "noise": work.noise,
         "rmse": rmse.transpose()?,
         "relative_mse": relative.transpose()?,
     }))
 }
 
 fn summary(report: &Report<'_>, pictures: &[PathBuf]) {
-    let Report { job, state, .. } = report;
+    let Report { job, work, .. } = report;
     let [width, height] = job.size;
-    let pixels = report.image.pixels().len() as f64;
+    let pixels = report.work.image.pixels().len() as f64;
     println!(
         "{width} x {height} pixels, {:.1} samples each, {:.2} s, {:.2} M paths/s",
-        state.paths as f64 / pixels,
-        state.seconds,
-        state.paths as f64 / state.seconds / 1e6,
+        work.paths as f64 / pixels,
+        work.seconds,
+        work.paths as f64 / work.seconds / 1e6,
     );
-    if let Some(noise) = state.noise() {
+    if let Some(noise) = work.noise {
         println!("noise {:.3} % of the mean", 100.0 * noise);
     }
-    if state.rejected > 0 {
-        println!("{} paths were not finite and are left out", state.rejected);
+    if work.rejected > 0 {
+        println!("{} paths were not finite and are left out", work.rejected);
     }
     for file in pictures {
         println!("{}", file.display());

@@ -47,8 +47,8 @@ impl Effort {
             }
         } else {
             Self {
-                powers: [6, 19],
-                seeds: 24,
+                powers: [6, 18],
+                seeds: 20,
                 shortest: 1e-3,
                 small: 32,
                 spp_powers: 6,

@@ -72,7 +72,7 @@ pub(crate) fn add(report: &mut Report) -> Result<(), Failure> {
     let limits = Limits::of(&shots[0], &reference);
     let mut pictures = vec![Picture {
         png: png(&reference, &report.file("picture_reference.png"))?,
-        caption: "Mitsuba 3, 131 072 samples a pixel".to_owned(),
+        caption: "Mitsuba 3: the reference".to_owned(),
     }];
     if let Some(errors) = reference.std_error() {
         let values: Vec<f64> = errors.pixels().iter().map(|&e| luminance(e)).collect();

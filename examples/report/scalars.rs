@@ -5,7 +5,7 @@ use estimand::estimators::{Strata, Vegas};
 use estimand::points::{
     Folded, Halton, Hammersley, HashedOwen, Lattice, NRooks, Owen, Shifted, Sobol, Stratified,
 };
-use estimand::report::number::seconds;
+use estimand::report::number::{seconds, significant};
 use estimand::report::{Cell, Chart, Column, Table};
 use estimand::{Average, Error, MonteCarlo, Replicated, hash};
 
@@ -85,9 +85,10 @@ pub(crate) fn add(report: &mut Report) -> Result<(), Failure> {
     let [first, last] = report.effort.powers;
     report.page.section("Error against run time");
     report.page.text(&format!(
-        "Every method integrates every kind of integrand with 2^{first} to 2^{} evaluations, each in {} runs with seeds of their own. \
+        "Every method integrates every kind of integrand with {} to {} evaluations, each in {} runs with seeds of their own. \
          Sets of points that are not random of themselves are randomised; where they have no error bar, nothing is claimed.",
-        last - 1,
+        1_u64 << first,
+        1_u64 << (last - 1),
         report.effort.seeds
     ));
     let mut found = Vec::new();
@@ -114,8 +115,9 @@ pub(crate) fn add(report: &mut Report) -> Result<(), Failure> {
         let integral = kind.problem.integral().unwrap_or(f64::NAN);
         let cost = convergence.evaluation_seconds.unwrap_or(f64::NAN);
         report.page.text(&format!(
-            "{} Its integral is {integral:.6e}; one evaluation takes {} by itself. The points of a method, and the estimate, are the rest.",
+            "{} Its integral is {}; one evaluation takes {} by itself. The points of a method, and the estimate, are the rest.",
             kind.about,
+            significant(integral, 7),
             seconds(cost, 2)
         ));
         report.page.charts([

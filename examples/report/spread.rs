@@ -18,6 +18,28 @@ impl Spread {
         Self::around(moments.mean(), moments.std_error().unwrap_or(f64::INFINITY))
     }
 
+    /// The median of independent times, between the order statistics that hold the true one with at least 95 % where there
+    /// are six or more: what else a machine does makes a few of them very long.
+    pub(crate) fn of_times(mut times: Vec<f64>) -> Self {
+        times.sort_by(f64::total_cmp);
+        let count = times.len();
+        // The probability that so many of them or fewer lie below the median.
+        let mut rank = 0;
+        let (mut term, mut tail) = (0.5_f64.powf(count as f64), 0.5_f64.powf(count as f64));
+        while tail + term * (count - rank) as f64 / (rank + 1) as f64 <= 0.025
+            && 2 * rank + 2 < count
+        {
+            term *= (count - rank) as f64 / (rank + 1) as f64;
+            rank += 1;
+            tail += term;
+        }
+        Self {
+            value: 0.5 * (times[(count - 1) / 2] + times[count / 2]),
+            low: times[rank],
+            high: times[count - 1 - rank],
+        }
+    }
+
     pub(crate) fn around(value: f64, std_error: f64) -> Self {
         Self {
             value,
@@ -28,13 +50,14 @@ impl Spread {
 
     /// The ratio of two positive numbers that were measured independently.
     pub(crate) fn over(self, other: Self) -> Self {
-        let relative = |s: Self| 0.5 * (s.high - s.low) / s.value;
-        let reach = relative(self).hypot(relative(other)).exp();
         let value = self.value / other.value;
+        // Distances on the logarithmic scale, which ends at zero.
+        let up = |s: Self| (s.high / s.value).ln();
+        let down = |s: Self| (s.value / s.low.max(0.0)).ln();
         Self {
             value,
-            low: value / reach,
-            high: value * reach,
+            low: value / down(self).hypot(up(other)).exp(),
+            high: value * up(self).hypot(down(other)).exp(),
         }
     }
 

@@ -224,6 +224,19 @@ impl Curve {
     }
 }
 
+impl Curve {
+    /// How long the method would take to reach `error`, in seconds, if its error went on falling as its [slope](Self::slope)
+    /// says and its time grew as its evaluations: an extrapolation behind the last sample. `None` where there is nothing to
+    /// go by: no interval for the slope, or one that reaches above -0.2; and for more than 10^6 times the last sample's time.
+    pub fn seconds_by_slope_to(&self, error: f64) -> Option<f64> {
+        let slope = self.slope?;
+        let last = self.samples.iter().rev().find(|sample| !sample.limited)?;
+        let factor = (last.rmse / error).powf(-1.0 / slope.value);
+        (slope.interval?.high < -0.2 && (1.0..1e6).contains(&factor))
+            .then_some(factor * last.seconds)
+    }
+}
+
 impl Slope {
     /// The least-squares line through `points`; `None` for fewer than two different abscissas.
     ///
@@ -289,6 +302,13 @@ mod tests {
         assert!((curve.seconds_to(0.1).unwrap() - 10.0).abs() < 1e-12);
         assert_eq!(curve.seconds_to(2.0), Some(1.0));
         assert_eq!(curve.seconds_to(0.001), None);
+        // Two samples have no interval; of three on a line, a tenth of the error takes 10^(1/2) of the time.
+        assert_eq!(curve.seconds_by_slope_to(0.001), None);
+        let line = [run(1, 1.0, 1.0), run(10, 0.01, 2.0), run(100, 1e-4, 4.0)].concat();
+        let line = Curve::of_runs("line", line, 0.0).unwrap();
+        let seconds = line.seconds_by_slope_to(1e-5).unwrap();
+        assert!((seconds - 4.0 * 10_f64.sqrt()).abs() < 1e-9, "{seconds}");
+        assert_eq!(line.seconds_by_slope_to(1e-3), None);
         // 1 / (0.01^2 100).
         assert!((curve.samples[1].efficiency.unwrap() - 100.0).abs() < 1e-9);
     }

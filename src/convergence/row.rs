@@ -60,7 +60,8 @@ impl Convergence {
     /// What an evaluation costs beside the integrand, in seconds: the time of its point, and its share of the estimate.
     /// `None` where the [time of the integrand](Self::evaluation_seconds) is not known.
     ///
-    /// For runs on one thread. A difference of two measurements: slightly below zero where the points cost next to nothing.
+    /// For runs on one thread. A difference of two measurements: it can fall below zero where points cost next to nothing, and
+    /// where an estimator evaluates several points at once.
     pub fn points_seconds(&self, sample: &Sample) -> Option<f64> {
         let integrand = self.evaluation_seconds?;
         (sample.evaluations > 0).then(|| sample.seconds / sample.evaluations as f64 - integrand)

@@ -7,14 +7,14 @@ use crate::estimate::order_statistic;
 use crate::points::PointSet;
 use crate::tallied::{Tallied, tallied};
 use crate::tally::Tally;
-use crate::{Error, ErrorBar, Estimate, NonFinite, Value};
+use crate::{Error, ErrorBar, Estimate, NonFinite, Value, Warning};
 
 /// The median of several averages over independently randomised point sets. Made by [`Replicated::median`].
 ///
 /// Nets under a random linear matrix scramble are now and then much worse than usual, and otherwise better than any
 /// rate that their mean reaches: the median profits, for smooth integrands.[^pan] Under nested scrambling it does not
-/// help. The median is biased where the averages are not symmetric about the integral, as they are for rare events:
-/// use the mean there.
+/// help. The median is biased where the averages are not symmetric about the integral, as for rare events, of which
+/// [`Warning::FewValues`] and [`Warning::Tied`] tell: use the mean there.
 ///
 /// The interval lies between order statistics of the replicates, and holds the median of their distribution at any
 /// number of them. It takes 6 replicates for 95 %, 8 for 99 %.
@@ -76,8 +76,11 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Median<F> {
         let (below, above) = ((means.len() - 1) / 2, means.len() / 2);
         let mean = order_statistic(means, below)
             .zip(order_statistic(means, above), |a, b| 0.5 * a + 0.5 * b);
+        let mut warnings = estimate.warnings.clone();
+        warnings.extend(tied(means));
         Some(Estimate {
             mean,
+            warnings,
             std_error: estimate
                 .std_error
                 .map(|error| error.map(|error| error * NORMAL)),
@@ -85,6 +88,42 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Median<F> {
             ..estimate
         })
     }
+}
+
+/// Warns where half of the replicates or more equal another one, in some component.
+///
+/// Replicates that differ by rounding alone are not meant: they agree as well as they can.
+fn tied<V: Value>(means: &[V]) -> Option<Warning> {
+    let sorted: Vec<V> = (0..means.len())
+        .map(|rank| order_statistic(means, rank))
+        .collect();
+    let (quarter, half) = (means.len() / 4, means.len() / 2);
+    let spread = sorted[means.len() - 1 - quarter].zip(sorted[quarter], |high, low| high - low);
+    let rounding = sorted[half].map(|middle| 8.0 * f64::EPSILON * middle.abs());
+    let steps = sorted.windows(2).fold(V::ZERO, |steps, pair| {
+        let step = pair[1].zip(pair[0], |b, a| if b > a { 1.0 } else { 0.0 });
+        steps.zip(step, |steps, step| steps + step)
+    });
+    let mut fewest = f64::INFINITY;
+    let _ = steps.zip(
+        spread.zip(rounding, |spread, rounding| spread - rounding),
+        |steps, excess| {
+            if excess > 0.0 {
+                fewest = fewest.min(steps + 1.0);
+            }
+            steps
+        },
+    );
+    if 2.0 * fewest > means.len() as f64 {
+        return None;
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small count"
+    )]
+    let distinct = fewest as u64;
+    Some(Warning::Tied { distinct })
 }
 
 tallied!([P: PointSet, F: Fn(u64) -> P] Median<F>);

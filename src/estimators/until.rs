@@ -157,8 +157,12 @@ impl<E: Progressive> Until<E> {
         };
         match outcome {
             Ok(stop) => {
-                let rejected = self.estimator.used(state);
-                finish(stop).ok_or_else(|| Error::NothingLeft { rejected }.into())
+                let used = self.estimator.used(state);
+                let nothing = match stop {
+                    Stop::Count => Error::NothingLeft { rejected: used },
+                    _ => Error::TooEarly { used },
+                };
+                finish(stop).ok_or_else(|| nothing.into())
             }
             Err(reason) => Err(Incomplete {
                 reason,

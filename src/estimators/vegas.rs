@@ -7,23 +7,25 @@ use crate::integrands::ImportanceMap;
 use crate::stratum::Stratified;
 use crate::warning::Warning;
 use crate::{
-    Error, ErrorBar, Estimate, Estimator, Incomplete, Integrand, Outcome, Progressive, Stop, Value,
-    hash,
+    Error, ErrorBar, Estimate, Estimator, Incomplete, Integrand, Moments, Outcome, Progressive,
+    Stop, Value, hash,
 };
 
 mod adaptation;
+mod grid;
 
-use adaptation::Adaptation;
+use adaptation::{Adaptation, Pass};
 
 /// Adaptive integration of peaked and badly scaled integrands: an [`ImportanceMap`] that learns from iteration to
 /// iteration, and a grid of strata whose numbers of points follow their variances.[^lepage]
 ///
-/// The first half of the iterations only trains and is then forgotten. The others go on learning; each is unbiased whatever was
-/// learned before it, and their mean is weighted by their numbers of points, not by their claimed errors, which would
-/// bias it.
+/// The first half of the iterations, five at most, only trains and is then forgotten. The others go on learning, each
+/// less than the one before, so that what they learn is averaged; each is unbiased whatever was learned before it, and their mean is weighted by their numbers of points, not by their claimed errors,
+/// which would bias it. An estimate that is stopped before is made of what training iterations there are.
 ///
 /// A peak that no point of the first iterations hits is not there for it: the estimate then comes with
-/// [`Warning::NoSpread`] or [`Warning::FewValues`]. Peaks along diagonals gain little. For smooth
+/// [`Warning::NoSpread`] or [`Warning::FewValues`]. Peaks along diagonals gain little. The maps of all axes are learned with
+/// some noise, which multiplies: in hundreds of dimensions they do more harm than good. For smooth
 /// integrands a trained map under scrambled nets ([`Mapped`](crate::integrands::Mapped)) is better by far.
 ///
 /// Below 1000 evaluations the variances of the strata are known from too few points: intervals hold the integral less often
@@ -78,12 +80,14 @@ pub struct Iteration<V> {
     pub training: bool,
 }
 
-/// The state of a [`Vegas`] between two iterations; see [`Progressive`].
+/// The state of a [`Vegas`]; see [`Progressive`].
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VegasState<V> {
     adaptation: Adaptation<V>,
     iterations: Vec<Iteration<V>>,
+    /// The iteration that was begun.
+    open: Option<Pass<V>>,
 }
 
 /// All that a [`Vegas`] found out.
@@ -103,15 +107,13 @@ pub struct Adapted<V> {
 }
 
 impl Vegas {
-    /// About `count` evaluations in ten iterations, or in fewer of a thousand each, adapting to the first `dimensions` coordinates; further coordinates are
-    /// independent. `seed` selects the points.
+    /// About `count` evaluations in ten iterations, or in fewer of a thousand each, or in more of four million each, adapting
+    /// to the first `dimensions` coordinates; further coordinates are independent. `seed` selects the points.
     ///
     /// # Errors
     ///
     /// [`Error::Refused`] for no dimensions, and for fewer than 40 evaluations.
     pub fn new(dimensions: u32, count: u64, seed: u64) -> Result<Self, Error> {
-        /// Points a bin and iteration, about.
-        const FILL: u64 = 20;
         if dimensions == 0 {
             let domain = "at least 1";
             return Err(Error::refused("number of dimensions", domain, dimensions));
@@ -119,9 +121,13 @@ impl Vegas {
         if count < 40 {
             return Err(Error::refused("count", "at least 40", count));
         }
-        let iterations = (count / ENOUGH).clamp(2, 10) as u32;
+        /// Evaluations of an iteration past which there is nothing to be gained: the next one has learned more.
+        const MOST: u64 = 1 << 22;
+        let iterations = (count / ENOUGH).clamp(2, 10).max(count / MOST);
+        let iterations = u32::try_from(iterations).unwrap_or(u32::MAX);
         let each = count / u64::from(iterations);
-        let bins = usize::try_from(each / FILL).unwrap_or(usize::MAX);
+        // Narrow bins follow the integrand, wide ones have many points to learn from: as many points a bin as bins.
+        let bins = usize::try_from(each.isqrt()).unwrap_or(usize::MAX);
         Ok(Self {
             count,
             iterations,
@@ -153,7 +159,7 @@ impl Vegas {
         self
     }
 
-    /// The same with another exponent of damping in `[0, 2]`: 0 learns nothing, the default is 0.5.
+    /// The same with another exponent of damping in `[0, 2]`: 0 learns nothing, the default is 0.5, much more than 1 swings.
     ///
     /// # Errors
     ///
@@ -208,10 +214,11 @@ impl Vegas {
 
     /// How many of the iterations only train.
     fn training(&self) -> usize {
+        const MOST: usize = 5;
         if self.trained {
             0
         } else {
-            self.iterations as usize / 2
+            (self.iterations as usize / 2).min(MOST)
         }
     }
 
@@ -222,11 +229,9 @@ impl Vegas {
 
     /// The estimate from the iterations that did not only train, and their chi-square.
     fn estimate_of<V: Value>(&self, state: &VegasState<V>) -> Option<(Estimate<V>, Option<f64>)> {
-        let main: Vec<_> = state
-            .iterations
-            .iter()
-            .filter(|one| !one.training)
-            .collect();
+        let trained = state.iterations.partition_point(|one| one.training);
+        let (training, main) = state.iterations.split_at(trained);
+        let main = if main.is_empty() { training } else { main };
         let number = main.len();
         if number == 0 {
             return None;
@@ -241,7 +246,7 @@ impl Vegas {
         });
         // Each iteration's part in the variance, the largest of the components.
         let (mut below, mut largest_share) = (0.0, 0.0_f64);
-        for one in &main {
+        for one in main {
             let mut part = 0.0_f64;
             let _ = one.std_error.zip(std_error, |own, error| {
                 if error > 0.0 {
@@ -279,16 +284,24 @@ impl Vegas {
             consistency.for_each(|x| largest = largest.max(x));
             largest
         });
-        // Three standard deviations of chi-square per degree of freedom: errors that the iterations contradict are
-        // scaled until they do not.
+        // Three standard deviations of chi-square per degree of freedom: errors that the iterations contradict give way to the
+        // spread of the iterations.
         let limit = 1.0 + 3.0 * (2.0 * per_freedom).sqrt();
-        let std_error = std_error.zip(consistency, |error, chi_square| {
-            if chi_square > limit {
-                error * chi_square.sqrt()
-            } else {
-                error
-            }
-        });
+        let contradicted = chi_square.is_some_and(|chi_square| chi_square > limit);
+        let means: Moments<V> = main.iter().map(|one| one.mean).collect();
+        let spread = means.std_error().unwrap_or(V::ZERO);
+        let spread = consistency.zip(
+            spread,
+            |chi_square, spread| {
+                if chi_square > limit { spread } else { 0.0 }
+            },
+        );
+        let std_error = std_error.zip(spread, f64::max);
+        let freedom = if contradicted {
+            together.freedom.min(number as f64 - 1.0)
+        } else {
+            together.freedom
+        };
         let mut warnings = together.warnings();
         if self.count < ENOUGH {
             let count = self.count;
@@ -296,16 +309,14 @@ impl Vegas {
         }
         // Iterations that differ by rounding alone contradict nothing.
         let rounding = |warning: &Warning| matches!(warning, Warning::Rounding { .. });
-        if let Some(chi_square) = chi_square.filter(|&chi_square| chi_square > limit)
+        if let Some(chi_square) = chi_square.filter(|_| contradicted)
             && !warnings.iter().any(rounding)
         {
             warnings.push(Warning::Inconsistent { chi_square });
         }
         let estimate = Estimate {
             std_error: Some(std_error),
-            error_bar: ErrorBar::Strata {
-                freedom: together.freedom,
-            },
+            error_bar: ErrorBar::Strata { freedom },
             replicates: main.iter().map(|one| one.mean).collect(),
             requested: self.count,
             stop: if state.iterations.len() < self.iterations as usize {
@@ -331,14 +342,17 @@ impl Progressive for Vegas {
         Ok(VegasState {
             adaptation: Adaptation::new(self.map.clone(), self.each()),
             iterations: Vec::new(),
+            open: None,
         })
     }
 
     fn used<V: Value>(&self, state: &VegasState<V>) -> u64 {
-        state.iterations.iter().map(|one| one.used).sum()
+        let whole: u64 = state.iterations.iter().map(|one| one.used).sum();
+        let open = state.open.as_ref();
+        whole + open.map_or(0, |pass| state.adaptation.used(pass))
     }
 
-    /// Goes on by whole iterations.
+    /// Goes on by parts of iterations. An iteration that is not complete is not part of the estimate yet.
     fn grow<I: Integrand>(
         &self,
         state: &mut VegasState<Wide<I>>,
@@ -348,21 +362,26 @@ impl Progressive for Vegas {
         let VegasState {
             adaptation,
             iterations,
+            open,
         } = state;
         if adaptation.map.dimensions() != self.map.dimensions() {
             let domain = "one of this estimator, with as many dimensions";
             let value = adaptation.map.dimensions();
             return Err(Error::refused("state", domain, value));
         }
-        let mut used: u64 = iterations.iter().map(|one| one.used).sum();
-        while used < evaluations && iterations.len() < self.iterations as usize {
+        let mut whole: u64 = iterations.iter().map(|one| one.used).sum();
+        while whole < evaluations && iterations.len() < self.iterations as usize {
             let seed = hash::hash(self.seed, iterations.len() as u64);
-            let pass = adaptation.pass(integrand, seed)?;
+            let pass = open.get_or_insert_with(|| adaptation.begin(integrand, seed));
+            adaptation.go_on(pass, integrand, seed, evaluations - whole)?;
+            let points = adaptation.points();
+            if adaptation.used(pass) < points {
+                return Ok(());
+            }
             let Some(alone) = Stratified::new(&pass.strata) else {
                 return Err(Error::NothingLeft { rejected: 0 });
             };
-            let points = adaptation.points();
-            used += points;
+            whole += points;
             iterations.push(Iteration {
                 mean: alone.mean,
                 std_error: alone.std_error,
@@ -371,7 +390,11 @@ impl Progressive for Vegas {
                 used: points,
                 training: iterations.len() < self.training(),
             });
-            adaptation.learn(&pass, self.damping, self.each());
+            // The first half of the iterations finds the place, a half of the way each; the others average what they
+            // learn.
+            let settled = iterations.len().saturating_sub(self.training()) + 2;
+            adaptation.learn(pass, self.damping / settled as f64, self.each());
+            *open = None;
         }
         Ok(())
     }

@@ -211,9 +211,6 @@ impl Plan<'_> {
         let Description {
             integrator, place, ..
         } = self.description;
-        if integrator.hide_emitters {
-            return Err(place.error("`hide_emitters` is not supported; leave it out"));
-        }
         if integrator.techniques == Techniques::Bsdfs && needs::has_points(self.description) {
             return Err(place.error(
                 "without `emitter_samples` lights without size would be missed; leave them at 1",
@@ -224,7 +221,10 @@ impl Plan<'_> {
                 "without `bsdf_samples` mirrors and glass would be black; leave them at 1",
             ));
         }
-        let paths = Paths::default().roulette_from(integrator.rr_depth);
+        let mut paths = Paths::default().roulette_from(integrator.rr_depth);
+        if integrator.hide_emitters {
+            paths = paths.hiding_lights();
+        }
         match integrator.max_depth {
             None => Ok(paths),
             Some(depth) => paths.longest(depth).map_err(|e| place.error(e)),

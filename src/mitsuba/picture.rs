@@ -9,7 +9,7 @@ use crate::path::bsdf::Bsdf;
 use crate::path::filter::Filter;
 use crate::path::light::{Environment, Light};
 use crate::path::sensor::Sensor;
-use crate::path::{Pixel, View};
+use crate::path::{Adapted, Adaptive, Pixel, Unfinished, View};
 use crate::points::PointSet;
 use crate::{Average, Estimate, Estimator, Incomplete, Integrand, NonFinite, Sampler};
 
@@ -28,6 +28,18 @@ pub trait Picture: Sync + fmt::Debug {
         points: &dyn PointSet,
         count: u64,
     ) -> Result<Estimate<DVec3>, Incomplete<DVec3>>;
+
+    /// The picture with more samples where it varies more: see [`View::render_adaptive`].
+    ///
+    /// # Errors
+    ///
+    /// [`Unfinished`] as there.
+    fn adaptive(
+        &self,
+        size: [u32; 2],
+        seed: u64,
+        adaptive: Adaptive,
+    ) -> Result<Adapted, Unfinished>;
 
     /// How many coordinates the sample of a pixel at one of the points takes.
     fn coordinates(
@@ -57,6 +69,15 @@ where
         Average::new(points, count)
             .non_finite(NonFinite::Reject)
             .estimate(&pixel(self, position, size))
+    }
+
+    fn adaptive(
+        &self,
+        size: [u32; 2],
+        seed: u64,
+        adaptive: Adaptive,
+    ) -> Result<Adapted, Unfinished> {
+        self.render_adaptive(size, seed, adaptive)
     }
 
     fn coordinates(

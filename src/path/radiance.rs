@@ -16,6 +16,7 @@ use crate::{Error, Sampler};
 pub struct Paths {
     pub(in crate::path) longest: u32,
     pub(in crate::path) roulette_from: u32,
+    pub(in crate::path) hides_lights: bool,
 }
 
 impl Default for Paths {
@@ -23,6 +24,7 @@ impl Default for Paths {
         Self {
             longest: u32::MAX,
             roulette_from: 5,
+            hides_lights: false,
         }
     }
 }
@@ -51,6 +53,13 @@ impl Paths {
         self
     }
 
+    /// Leaves out of the picture what emits light, but not its light: the camera looks through shapes that shine, and sees
+    /// nothing where it would see what is around the scene.
+    pub fn hiding_lights(mut self) -> Self {
+        self.hides_lights = true;
+        self
+    }
+
     /// The radiance that arrives at the origin of `ray` from its direction: an estimate, whose mean over the
     /// coordinates of `u` is the solution of the rendering equation.[^kajiya]
     ///
@@ -67,6 +76,9 @@ impl Paths {
         u: &mut S,
     ) -> Vec3 {
         let mut radiance = Vec3A::ZERO;
+        if self.hides_lights {
+            ray = scene.past_lights(ray);
+        }
         // What a unit of radiance at the end of the path adds to the pixel.
         let mut throughput = Vec3A::ONE;
         // The density with which the direction of the ray was drawn. The camera's is no choice.
@@ -75,7 +87,9 @@ impl Paths {
         for segment in 1.. {
             let Some(vertex) = scene.meet(&ray) else {
                 let emission = scene.environment().emitted(ray.direction);
-                radiance += throughput * emission.radiance * power(density, emission.density);
+                if segment > 1 || !self.hides_lights {
+                    radiance += throughput * emission.radiance * power(density, emission.density);
+                }
                 break;
             };
             // Emitted light, met by a direction that was drawn at the surface before.

@@ -9,6 +9,8 @@ use super::bsdf::Bsdf;
 use super::filter::{BoxFilter, Filter};
 use super::image::{Image, Row};
 use super::light::{Environment, Light};
+#[cfg(feature = "simd")]
+use super::packet::Packet;
 use super::sensor::Sensor;
 use super::{Paths, Ray, Scene};
 use crate::points::pixel;
@@ -52,6 +54,18 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Pixel<'_, B, L, E,
     }
 }
 
+#[cfg(feature = "simd")]
+impl<B, L, E, C, F> Pixel<'_, B, L, E, C, F> {
+    /// The scene for many paths at once, if it is one of those and the paths are too.
+    #[inline]
+    fn packet(&self) -> Option<&Packet> {
+        if self.paths.hides_lights {
+            return None;
+        }
+        self.scene.packet()
+    }
+}
+
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
     for Pixel<'_, B, L, E, C, F>
 {
@@ -68,7 +82,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
     #[inline]
     fn evaluate_many<S: Sampler>(&self, samplers: &mut [S], values: &mut [Vec3]) {
         #[cfg(feature = "simd")]
-        if let Some(packet) = self.scene.packet() {
+        if let Some(packet) = self.packet() {
             return packet.radiance(self.paths, |u| self.start(u), samplers, values);
         }
         for (u, value) in samplers.iter_mut().zip(values) {
@@ -78,7 +92,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
 
     fn dimensions(&self) -> u32 {
         #[cfg(feature = "simd")]
-        if self.scene.packet().is_some() {
+        if self.packet().is_some() {
             return AHEAD_OF_PACKETS;
         }
         AHEAD

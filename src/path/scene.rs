@@ -349,6 +349,18 @@ impl<B: Bsdf, L, E> Scene<B, L, E> {
     }
 }
 
+impl<B: Bsdf, L, E> Scene<B, L, E> {
+    /// The same ray from behind the shapes that emit light which it meets first.
+    pub(in crate::path) fn past_lights(&self, mut ray: Ray) -> Ray {
+        while let Some(vertex) = self.meet(&ray)
+            && vertex.emitter.is_some()
+        {
+            ray.origin = vertex.surface.leave(ray.direction);
+        }
+        ray
+    }
+}
+
 impl<B, L, E> Scene<B, L, E> {
     /// The shapes that emit light.
     #[inline]

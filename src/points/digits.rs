@@ -7,8 +7,14 @@ use super::scramble::DigitScramble;
 /// stop at a power above 2^43, and are followed by the rest of the shift as a fraction.
 const FINEST: u64 = 1 << 63;
 
-/// Coordinates that are computed at once.
-pub(super) const SLACK: usize = 8;
+/// Coordinates that are computed at once; every table has more.
+pub(super) const CHUNK: usize = 32;
+
+/// How many times that in a column.
+pub(super) const CHUNKS: usize = 8;
+
+/// The coordinates in one dimension of points with consecutive indices.
+pub(super) type Column = [[f64; CHUNK]; CHUNKS];
 
 /// A base, and what is computed from it once.
 #[derive(Clone, Copy, Debug)]
@@ -51,58 +57,38 @@ impl Base {
     /// The scrambled radical inverse of `index`.
     #[inline]
     pub(super) fn inverse<S: DigitScramble>(&self, scramble: &S, key: u64, index: u64) -> f64 {
-        self.fraction(
-            scramble,
-            key,
-            Places {
-                base: self,
-                rest: index,
-            },
-        )
+        self.fraction(scramble, key, Places::new(self, index))
     }
 
-    /// The scrambled radical inverses of consecutive indices, from `first` on, where digits are not nested.
+    /// The scrambled radical inverses of `count` consecutive indices, from `first` on, where digits are not nested. They are
+    /// the first numbers of `column`; others in it have no meaning.
     ///
-    /// The first digits come from a table of all their values; the other digits are the same in a run of indices. The last
-    /// [`SLACK`] numbers of `out` are no results.
+    /// The first digits come from a table of all their values; the other digits are the same in a run of indices.
+    #[inline(always)]
     pub(super) fn inverses<S: DigitScramble>(
         &self,
         scramble: &S,
         key: u64,
         table: &[f64],
         first: u64,
-        out: &mut [f64],
+        count: usize,
+        column: &mut Column,
     ) {
         let power = u64::from(self.power);
-        let (mut run, mut start) = (first / power, to_index(first % power));
-        let mut done = 0;
-        while done + SLACK < out.len() {
-            let mut digits = Places {
-                base: self,
-                rest: run,
-            };
-            let mut scrambled = Scrambled::new(self, scramble, key);
-            scrambled.skip(self.leading);
-            let rest = self.rest(&mut scrambled, &mut digits);
-            let length = self.power().min(start + out.len() - SLACK - done) - start;
-            // Whole vectors: what they write past the end of the run, the next one overwrites.
-            let vectors = out[done..].chunks_exact_mut(SLACK);
-            for (u, leading) in vectors
-                .zip(table[start..].chunks_exact(SLACK))
-                .take(length.div_ceil(SLACK))
-            {
-                for (u, &leading) in u.iter_mut().zip(leading) {
-                    *u = self.join(leading, rest);
-                }
-            }
-            done += length;
-            start = 0;
-            run += 1;
+        let (place, power) = (to_index(first % power), to_index(power));
+        let mut runs = Runs::new(self, scramble, key, first / u64::from(self.power));
+        // Each run is longer than a chunk.
+        let mut rests = [0.0; CHUNKS + 2];
+        let chunks = count.div_ceil(CHUNK);
+        let touched = (place + count).div_ceil(power);
+        for rest in &mut rests[..touched] {
+            *rest = runs.next();
         }
+        write_runs(&mut column[..chunks], table, place, &rests, self);
     }
 
-    /// What the first digits of all indices below the power of the base make, where digits are not nested; then
-    /// [`SLACK`] numbers without meaning.
+    /// What the first digits of all indices below the power of the base make, where digits are not nested; then the first
+    /// [`CHUNK`] of them again.
     pub(super) fn table<S: DigitScramble>(&self, scramble: &S, key: u64) -> Vec<f64> {
         let mut table = vec![0.0];
         let mut scrambled = Scrambled::new(self, scramble, key);
@@ -124,8 +110,7 @@ impl Base {
                 *entry += digits[0];
             }
         }
-        // Room to read whole vectors.
-        table.resize(table.len() + SLACK, 0.0);
+        table.extend_from_within(..CHUNK);
         table
     }
 
@@ -157,20 +142,31 @@ impl Base {
         scrambled: &mut Scrambled<'_, S>,
         digits: &mut impl Iterator<Item = u64>,
     ) -> f64 {
-        let base = u64::from(self.base);
-        let mut denominator = 1;
+        let denominator = self.push_all(scrambled, digits, 1);
+        (scrambled.mirrored as f64 + scrambled.tail()) / denominator as f64
+    }
+
+    /// Pushes digits as long as there are some, and there is room for them after those that make `denominator`. Returns the
+    /// denominator of all.
+    #[inline(always)]
+    fn push_all<S: DigitScramble>(
+        &self,
+        scrambled: &mut Scrambled<'_, S>,
+        digits: &mut impl Iterator<Item = u64>,
+        mut denominator: u64,
+    ) -> u64 {
         while denominator < self.room
             && let Some(digit) = digits.next()
         {
             scrambled.push(digit);
-            denominator *= base;
+            denominator *= u64::from(self.base);
         }
-        (scrambled.mirrored as f64 + scrambled.tail()) / denominator as f64
+        denominator
     }
 
     #[inline(always)]
     fn join(&self, leading: f64, rest: f64) -> f64 {
-        ((leading + rest) * self.inverse).min(BELOW_ONE)
+        join(leading, rest, self.inverse)
     }
 
     /// How many entries with a meaning the [`table`](Self::table) has.
@@ -179,17 +175,141 @@ impl Base {
     }
 }
 
+#[inline(always)]
+fn join(leading: f64, rest: f64, inverse: f64) -> f64 {
+    // One instruction, as `f64::min` is not: there is no NaN here.
+    let u = (leading + rest) * inverse;
+    if u < BELOW_ONE { u } else { BELOW_ONE }
+}
+
+/// Joins the first digits, from `place` in the table on, with the other digits of one run after the other.
+#[inline(always)]
+fn write_runs(
+    mut chunks: &mut [[f64; CHUNK]],
+    table: &[f64],
+    mut place: usize,
+    rests: &[f64; CHUNKS + 2],
+    base: &Base,
+) {
+    let (power, inverse) = (base.power(), base.inverse);
+    let mut run = 0;
+    // A loop that the compiler leaves alone: it would put chunks into vectors, in the place of what is in a chunk.
+    while let Some((chunk, later)) = chunks.split_first_mut() {
+        let mut us: [f64; CHUNK] = *table[place..].first_chunk().expect("the table goes on");
+        let (left, now, next) = (power - place, rests[run], rests[run + 1]);
+        for (lane, u) in us.iter_mut().enumerate() {
+            *u = join(*u, if lane < left { now } else { next }, inverse);
+        }
+        *chunk = us;
+        place += CHUNK;
+        if place >= power {
+            place -= power;
+            run += 1;
+        }
+        chunks = later;
+    }
+}
+
+/// What the digits after the first make, in one run of indices that share them after the other, where digits are not
+/// nested.
+struct Runs<'a, S> {
+    base: &'a Base,
+    scramble: &'a S,
+    key: u64,
+    /// The number of the run, but for its first digit, and that.
+    upper: u64,
+    digit: u64,
+    /// At the place of that digit.
+    scrambled: Scrambled<'a, S>,
+    /// What the upper digits make, scrambled: an integer and the fraction that follows, over a denominator.
+    mirrored: u64,
+    tail: f64,
+    /// The denominator, and what a first digit of 1 adds to the integer.
+    denominator: u64,
+    weight: u64,
+}
+
+impl<'a, S: DigitScramble> Runs<'a, S> {
+    /// From the run number `run` on.
+    #[inline(always)]
+    fn new(base: &'a Base, scramble: &'a S, key: u64, run: u64) -> Self {
+        let mut scrambled = Scrambled::new(base, scramble, key);
+        scrambled.skip(base.leading);
+        let mut runs = Self {
+            base,
+            scramble,
+            key,
+            upper: run / u64::from(base.base),
+            digit: run % u64::from(base.base),
+            scrambled,
+            mirrored: 0,
+            tail: 0.0,
+            denominator: 1,
+            weight: 1,
+        };
+        runs.set_upper();
+        runs
+    }
+
+    #[inline(always)]
+    fn set_upper(&mut self) {
+        let mut scrambled = Scrambled::new(self.base, self.scramble, self.key);
+        scrambled.skip(self.base.leading + 1);
+        let mut digits = Places::new(self.base, self.upper);
+        let base = u64::from(self.base.base);
+        self.denominator = self.base.push_all(&mut scrambled, &mut digits, base);
+        self.weight = self.denominator / base;
+        self.mirrored = scrambled.mirrored;
+        self.tail = scrambled.tail();
+    }
+
+    /// The fraction of the next run.
+    #[inline(always)]
+    fn next(&mut self) -> f64 {
+        let base = u64::from(self.base.base);
+        let fraction = if self.upper == 0 && self.digit == 0 {
+            // No digit at all, and all of the shift.
+            self.scrambled.tail()
+        } else {
+            let mirrored = self.scrambled.image(self.digit) * self.weight + self.mirrored;
+            (mirrored as f64 + self.tail) / self.denominator as f64
+        };
+        self.digit += 1;
+        if self.digit == base {
+            self.digit = 0;
+            self.upper += 1;
+            self.set_upper();
+        }
+        fraction
+    }
+}
+
 fn to_index(remainder: u64) -> usize {
     usize::try_from(remainder).expect("a remainder is below the power of the base, a u32")
 }
 
 /// The digits of an index, lowest first, down to the last that is not 0.
-struct Places<'a> {
-    base: &'a Base,
+struct Places {
+    base: u64,
+    reciprocal: u64,
     rest: u64,
+    /// Whether multiplying by the reciprocal does.
+    small: bool,
 }
 
-impl Iterator for Places<'_> {
+impl Places {
+    #[inline(always)]
+    fn new(base: &Base, index: u64) -> Self {
+        Self {
+            base: base.base.into(),
+            reciprocal: base.reciprocal,
+            rest: index,
+            small: index < SMALL && base.base < 1 << 20,
+        }
+    }
+}
+
+impl Iterator for Places {
     type Item = u64;
 
     #[inline(always)]
@@ -197,14 +317,12 @@ impl Iterator for Places<'_> {
         if self.rest == 0 {
             return None;
         }
-        let base = u64::from(self.base.base);
-        let quotient = if self.rest < SMALL && base < 1 << 20 {
-            let product = u128::from(self.rest) * u128::from(self.base.reciprocal);
-            high(product)
+        let quotient = if self.small {
+            high(u128::from(self.rest) * u128::from(self.reciprocal))
         } else {
-            self.rest / base
+            self.rest / self.base
         };
-        let digit = self.rest - quotient * base;
+        let digit = self.rest - quotient * self.base;
         self.rest = quotient;
         Some(digit)
     }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 use super::block::{Block, vectorised};
-use super::digits::{Base, SLACK};
+use super::digits::{Base, CHUNK, CHUNKS, Column};
 use super::scramble::{DigitScramble, Plain};
 use super::{Independent, PointSet, rows};
 use crate::Error;
@@ -150,11 +150,21 @@ impl<S: DigitScramble> PointSet for Halton<S> {
     }
 }
 
-/// Dimensions that are computed before their coordinates are put in their places.
-const TOGETHER: usize = 4;
+/// Dimensions that are computed before their coordinates are put in their places: those of one line of the cache, so that
+/// no line is written twice.
+const TOGETHER: usize = 8;
 
 /// Points that are.
-const POINTS: usize = 256;
+const POINTS: usize = CHUNKS * CHUNK;
+
+/// Where coordinates are until they are put in their places. No vector of them is in two lines of the cache.
+#[repr(align(64))]
+struct Room {
+    columns: [Column; TOGETHER],
+    /// The coordinates of a chunk of points, side by side: in the first and in the last half of the dimensions.
+    left: [[f64; TOGETHER / 2]; CHUNK],
+    right: [[f64; TOGETHER / 2]; CHUNK],
+}
 
 impl<S: DigitScramble> Halton<S> {
     /// The table of what the first digits make in one dimension, if there is one or `count` points are worth one. Tables of
@@ -179,7 +189,11 @@ impl<S: DigitScramble> Halton<S> {
     #[inline(always)]
     fn fill_tile(&self, block: &mut Block<'_>, dimension: u32, columns: Range<usize>) {
         let count = block.count();
-        let mut together = [[0.0; POINTS + SLACK]; TOGETHER];
+        let mut room = Room {
+            columns: [[[0.0; CHUNK]; CHUNKS]; TOGETHER],
+            left: [[0.0; TOGETHER / 2]; CHUNK],
+            right: [[0.0; TOGETHER / 2]; CHUNK],
+        };
         let mut keys = [0; TOGETHER];
         let mut tables = [const { None }; TOGETHER];
         let places = dimension as usize..dimension as usize + columns.len();
@@ -192,25 +206,37 @@ impl<S: DigitScramble> Halton<S> {
             let points = out.len() / block.width;
             for (lane, place) in places.clone().enumerate() {
                 let (base, key) = (&self.bases[place], keys[lane]);
-                let column = &mut together[lane][..points + SLACK];
+                let column = &mut room.columns[lane];
                 if let Some(table) = &tables[lane] {
-                    base.inverses(&self.scramble, key, table, index, column);
+                    base.inverses(&self.scramble, key, table, index, points, column);
                 } else {
-                    for (place, u) in (0..).zip(&mut column[..points]) {
+                    for (place, u) in (0..).zip(&mut column.as_flattened_mut()[..points]) {
                         *u = base.inverse(&self.scramble, key, index.wrapping_add(place));
                     }
                 }
             }
-            let rows = out.chunks_exact_mut(block.width);
-            if columns.len() == TOGETHER {
-                let [a, b, c, d] = &together;
-                for ((((row, a), b), c), d) in rows.zip(a).zip(b).zip(c).zip(d) {
-                    row[columns.start..][..TOGETHER].copy_from_slice(&[*a, *b, *c, *d]);
+            let mut rows = out.chunks_exact_mut(block.width);
+            for chunk in 0..points.div_ceil(CHUNK) {
+                let [a, b, c, d, e, f, g, h] = room.columns.each_ref().map(|column| &column[chunk]);
+                for (place, four) in room.left.iter_mut().enumerate() {
+                    *four = [a[place], b[place], c[place], d[place]];
                 }
-            } else {
-                for (point, row) in rows.enumerate() {
-                    for (u, column) in row[columns.clone()].iter_mut().zip(&together) {
-                        *u = column[point];
+                for (place, four) in room.right.iter_mut().enumerate() {
+                    *four = [e[place], f[place], g[place], h[place]];
+                }
+                let coordinates = room.left.iter().zip(&room.right).zip(&mut rows);
+                if columns.len() == TOGETHER {
+                    for ((left, right), row) in coordinates {
+                        let row = &mut row[columns.start..][..TOGETHER];
+                        row[..4].copy_from_slice(left);
+                        row[4..].copy_from_slice(right);
+                    }
+                } else {
+                    for ((left, right), row) in coordinates {
+                        let coordinates = left.iter().chain(right);
+                        for (u, &coordinate) in row[columns.clone()].iter_mut().zip(coordinates) {
+                            *u = coordinate;
+                        }
                     }
                 }
             }

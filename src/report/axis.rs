@@ -1,6 +1,6 @@
 //! Logarithmic axes: where their ticks are, and what is written there.
 
-use super::number::{power_of_ten, seconds};
+use super::number::{power_of_ten, seconds, significant};
 
 /// A logarithmic axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,7 @@ impl Axis {
         let value = f64::from(mantissa) * 10_f64.powi(exponent);
         match self.ticks {
             Ticks::Seconds => seconds(value, 1),
-            Ticks::Powers if (-3..4).contains(&exponent) => format!("{value}"),
+            Ticks::Powers if (-3..4).contains(&exponent) => significant(value, 1),
             Ticks::Powers if mantissa == 1 => power_of_ten(exponent),
             Ticks::Powers => format!("{mantissa}·{}", power_of_ten(exponent)),
         }
@@ -117,6 +117,10 @@ mod tests {
         );
         let many = labels(&numbers, -16.0, 0.0);
         assert!(many.len() <= 8, "{many:?}");
+        assert_eq!(
+            labels(&numbers, -1.1, 0.1),
+            ["0.1", "0.2", "0.3", "0.5", "1"]
+        );
         assert_eq!(many.last().unwrap(), "1");
     }
 }

@@ -36,6 +36,14 @@ impl Column {
         }
     }
 
+    /// A column of sentences, kept wide enough to be read on narrow screens too.
+    pub fn prose(heading: impl Into<String>) -> Self {
+        Self {
+            heading: heading.into(),
+            class: "prose",
+        }
+    }
+
     /// A column of numbers, set to the right.
     pub fn number(heading: impl Into<String>) -> Self {
         Self {
@@ -172,7 +180,7 @@ impl Table {
     }
 
     /// How long every method takes to bring its error below given shares of the [scale](Convergence::scale); the fastest
-    /// is marked. A dash stands where it was not reached.
+    /// that did is marked. What was not reached is [extrapolated](Curve::seconds_by_slope_to), marked by `≈`, or a dash.
     pub fn of_times(convergence: &Convergence, targets: &[f64]) -> Self {
         let columns = targets.iter().map(|&target| {
             let digits = u32::from(target < 0.01);
@@ -189,7 +197,12 @@ impl Table {
         let times: Vec<_> = convergence.curves.iter().map(times).collect();
         for (curve, own) in convergence.curves.iter().zip(&times) {
             let cells = own.iter().enumerate().map(|(target, time)| match time {
-                None => Cell::from("—"),
+                None => {
+                    let error = targets[target] * convergence.scale.unwrap_or(1.0).abs();
+                    let time = curve.seconds_by_slope_to(error);
+                    let text = time.map(|time| format!("≈ {}", number::seconds(time, 1)));
+                    text.unwrap_or_else(|| "—".to_owned()).into()
+                }
                 Some(time) => {
                     let text = number::seconds(*time, 2);
                     let least = times

@@ -196,10 +196,6 @@ fn what_the_tracer_lacks_is_told() {
     let folder = Folder::new();
     for (scene, expected) in [
         (
-            r#"<integrator type="path"><boolean name="hide_emitters" value="true"/></integrator>"#,
-            "`hide_emitters` is not supported",
-        ),
-        (
             r#"<integrator type="path"><integer name="max_depth" value="0"/></integrator>"#,
             "at least 1",
         ),

@@ -91,7 +91,7 @@ fn one_sample(report: &Report, integrand: &impl Integrand<Value = f64>) -> [Spre
             let error = estimate.ok().and_then(|estimate| estimate.std_error);
             variances.push(error.unwrap_or(f64::NAN).powi(2) * COUNT as f64);
         }
-        [Spread::of(variances), Spread::of(times)]
+        [Spread::of(variances), Spread::of_times(times)]
     })
 }
 
@@ -183,7 +183,6 @@ fn discrepancies(report: &Report, charts: &mut Vec<Chart>) -> Result<Claim, Fail
         .zip(&halton)
         .map(|(ham, hal)| ham / hal)
         .collect();
-    let below = ratios.iter().all(|&ratio| ratio < 1.0);
     let texts: Vec<String> = counts
         .iter()
         .zip(&ratios)
@@ -193,7 +192,11 @@ fn discrepancies(report: &Report, charts: &mut Vec<Chart>) -> Result<Claim, Fail
         claim: "Hammersley's points have a slightly lower star discrepancy than Halton's (in the plane).".into(),
         measured: format!("Hammersley over Halton: {}", texts.join(", ")),
         confidence: "exact discrepancies of the unscrambled sets".into(),
-        verdict: Verdict::of(below, !below),
+        verdict: match ratios.iter().filter(|&&ratio| ratio < 1.0).count() {
+            all if all == ratios.len() => Verdict::Holds,
+            most if 2 * most > ratios.len() => Verdict::Partly,
+            _ => Verdict::Fails,
+        },
     })
 }
 

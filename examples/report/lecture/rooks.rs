@@ -94,10 +94,10 @@ fn edge_error<P: PointSet>(
         let t = if upright { 0.0 } else { 2.0 * b - 1.0 };
         let covered = |y: f64| (a + t * (y - 0.5)).clamp(0.0, 1.0);
         // The area, by so many lines that their error does not count.
-        let area = (0..4096)
-            .map(|k| covered((f64::from(k) + 0.5) / 4096.0))
+        let area = (0..512)
+            .map(|k| covered((f64::from(k) + 0.5) / 512.0))
             .sum::<f64>()
-            / 4096.0;
+            / 512.0;
         let f = cube(|[x, y]| f64::from(u8::from(x < covered(y))));
         let estimate = Average::new(points(run), count)
             .estimate(&f)
@@ -113,7 +113,7 @@ fn edge_error<P: PointSet>(
 }
 
 fn edges(report: &Report) -> Result<Claim, Failure> {
-    let runs = 400 * report.effort.claim_runs;
+    let runs = 1000 * report.effort.claim_runs;
     let mut text = Vec::new();
     let mut better_upright = true;
     let mut worse_slanted = true;

@@ -23,7 +23,7 @@ use coat::Coat;
 /// a facet among those that are seen, or a direction.
 ///
 /// How much of the light passes the coat is tabulated for 64 cosines, and interpolated linearly, when the law is made,
-/// which takes some milliseconds.
+/// which takes a few hundredths of a second.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoughPlastic<P = Uniform> {
     eta: f32,

@@ -40,16 +40,18 @@ pub(super) fn sample(v: Vec3A, u: [f32; 2]) -> Vec3A {
     let total = cosine * (1.0 + greatest) + tail(last);
     let within = |erf: f32| erf.clamp(-1.0 + EDGE, greatest.min(1.0 - EDGE));
     let mut erf = within(greatest - (greatest + 1.0) * libm::erff((-a.ln()).sqrt()));
+    let mut along = inverse_erf(erf);
     for _ in 0..3 {
-        let x = inverse_erf(erf);
-        let excess = cosine * (1.0 + erf) + tail(x) - a * total;
-        let slope = cosine - x * sine;
-        if !(slope > 0.0) {
+        let excess = cosine * (1.0 + erf) + tail(along) - a * total;
+        let slope = cosine - along * sine;
+        // As near as rounding lets it come, or at the edge.
+        if excess.abs() < 1e-6 * total || !(slope > 0.0) {
             break;
         }
         erf = within(erf - excess / slope);
+        along = inverse_erf(erf);
     }
-    let (along, across) = (inverse_erf(erf), inverse_erf(2.0 * b - 1.0));
+    let across = inverse_erf(2.0 * b - 1.0);
     let (x, y) = if sine > 0.0 {
         (v.x / sine, v.y / sine)
     } else {

@@ -53,7 +53,7 @@ struct Part<V> {
 impl<V: Value> Adaptation<V> {
     /// Iterations of about `count` points, beginning with `map`.
     pub(super) fn new(map: ImportanceMap, count: u64) -> Self {
-        let strata = Grid::new(map.dimensions(), count);
+        let strata = Grid::new(map.dimensions(), count, map.bins());
         Self {
             map,
             counts: strata.evenly(count),
@@ -278,18 +278,8 @@ impl<V: Value> Adaptation<V> {
     /// Adapts the map to where the squares are, and the numbers of points to where the spread is.
     pub(super) fn learn(&mut self, pass: &Pass<V>, damping: f64, count: u64) {
         const EVEN: f64 = 0.2;
-        let weights: Vec<Vec<f64>> = pass
-            .squares
-            .chunks_exact(self.map.bins())
-            .map(|axis| {
-                axis.iter()
-                    .map(|squares| match squares.count {
-                        0.0 => 0.0,
-                        count => squares.sum / count,
-                    })
-                    .collect()
-            })
-            .collect();
+        let bins = self.map.bins();
+        let weights: Vec<_> = pass.squares.chunks_exact(bins).map(means).collect();
         self.map.refine(&weights, damping);
         self.scale = pass.largest;
         let scores: Vec<f64> = pass
@@ -317,6 +307,22 @@ impl<V: Value> Adaptation<V> {
             .collect();
         self.counts = apportion(&scores, count);
     }
+}
+
+/// The mean squares of the bins of an axis. Of a bin without points nothing is known: it has the mean of the nearest
+/// bins with points, so that nothing is learned where nothing was seen.
+fn means(axis: &[Squares]) -> Vec<f64> {
+    let known = |squares: &Squares| (squares.count > 0.0).then(|| squares.sum / squares.count);
+    (0..axis.len())
+        .map(|bin| {
+            let below = axis[..=bin].iter().rev().find_map(known);
+            let above = axis[bin..].iter().find_map(known);
+            match (below, above) {
+                (Some(below), Some(above)) => 0.5 * (below + above),
+                (one, other) => one.or(other).unwrap_or(0.0),
+            }
+        })
+        .collect()
 }
 
 /// What the values of a run of points are together; `None` if there are none.

@@ -30,7 +30,7 @@ use crate::Error;
 ///
 /// # Memory
 ///
-/// 56 bytes for a dimension, shared by all clones. Blocks of points make a table of up to 8 KiB for each dimension whose base
+/// 56 bytes for a dimension, shared by all clones. Blocks of points make a table of up to 8.3 KiB for each dimension whose base
 /// is below 1024, which clones share; for larger bases a table lives as long as its block is filled.
 ///
 /// ```

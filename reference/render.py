@@ -71,6 +71,13 @@ REFERENCES = {
     "environment": Reference(
         scene="environment.xml", size=128, batches=128, spp=256, first_seed=4001,
         check_batches=32, check_spp=16),
+    # One for each family of features.
+    **{name: Reference(
+        scene=f"{name}.xml", size=64, batches=128, spp=64, first_seed=10_001 + 1000 * number,
+        check_batches=32, check_spp=16)
+       for number, name in enumerate((
+           "textures", "sky", "rough_metals", "rough_glass", "plastics", "holes", "meshes",
+           "instances", "small_lights", "relief", "shapes", "lens", "parallel"))},
 }
 
 

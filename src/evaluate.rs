@@ -26,12 +26,9 @@ pub(crate) trait Visit {
     /// At the points `indices`, each of which begins in the stream `u` where the one before it ended; `begin` is told when.
     fn stream<S: Sampler>(&mut self, indices: Range<u64>, u: &mut S, begin: impl Fn(&mut S));
 
-    /// At points from `first` on that can be read in any order. Breaks off if no others are wanted.
-    fn points<S: Sampler>(
-        &mut self,
-        first: u64,
-        points: impl Iterator<Item = S>,
-    ) -> ControlFlow<()>;
+    /// At the points `indices`, which `at` gives in any order. Breaks off if no others are wanted.
+    fn points<S: Sampler>(&mut self, indices: Range<u64>, at: impl Fn(u64) -> S)
+    -> ControlFlow<()>;
 }
 
 /// Coordinates computed ahead per call of `fill`: 32 KiB, which the first-level cache holds.
@@ -48,8 +45,7 @@ impl<P: PointSet> Source for P {
         let dimensions = dimensions.min(self.dimensions());
         let width = dimensions as usize;
         if width == 0 || width > AHEAD {
-            let first = indices.start;
-            let _ = visit.points(first, indices.map(|index| self.point(index)));
+            let _ = visit.points(indices, |index| self.point(index));
             return;
         }
         // A power of two: nets fill such blocks fastest.
@@ -61,10 +57,13 @@ impl<P: PointSet> Source for P {
             let rows = usize::try_from(end - index).map_or(most, |left| left.min(most));
             let ahead = &mut room[..rows * width];
             self.fill(index, 0..dimensions, ahead);
-            let points = (index..)
-                .zip(ahead.chunks_exact(width))
-                .map(|(index, prefix)| Cursor::with_prefix(self, index, prefix));
-            if visit.points(index, points).is_break() {
+            let first = index;
+            let at = |index| {
+                #[expect(clippy::cast_possible_truncation, reason = "below the number of rows")]
+                let row = (index - first) as usize;
+                Cursor::with_prefix(self, index, &ahead[row * width..][..width])
+            };
+            if visit.points(first..first + rows as u64, at).is_break() {
                 break;
             }
             index += rows as u64;
@@ -253,34 +252,33 @@ impl<I: Integrand> Visit for Fast<'_, I> {
 
     fn points<S: Sampler>(
         &mut self,
-        _: u64,
-        mut points: impl Iterator<Item = S>,
+        indices: Range<u64>,
+        at: impl Fn(u64) -> S,
     ) -> ControlFlow<()> {
-        if I::AT_ONCE > 1 {
-            let mut samplers = Vec::with_capacity(I::AT_ONCE);
-            loop {
-                samplers.extend(points.by_ref().take(I::AT_ONCE));
-                let count = samplers.len();
-                if count == 0 {
-                    return ControlFlow::Continue(());
-                }
-                let values = &mut self.values[..count];
-                self.integrand.evaluate_many(&mut samplers, values);
-                self.add(count);
+        let most = if I::AT_ONCE > 1 {
+            I::AT_ONCE
+        } else {
+            Self::GROUP
+        };
+        let mut samplers = Vec::new();
+        let mut first = indices.start;
+        while first < indices.end {
+            let count = usize::try_from(indices.end - first).map_or(most, |left| left.min(most));
+            let group = first..first + count as u64;
+            let values = &mut self.values[..count];
+            if I::AT_ONCE > 1 {
                 samplers.clear();
-            }
-        }
-        loop {
-            let mut count = 0;
-            for (value, mut u) in self.values.iter_mut().zip(points.by_ref()) {
-                *value = self.integrand.evaluate(&mut u);
-                count += 1;
-            }
-            if count == 0 {
-                return ControlFlow::Continue(());
+                samplers.extend(group.clone().map(&at));
+                self.integrand.evaluate_many(&mut samplers, values);
+            } else {
+                for (value, index) in values.iter_mut().zip(group.clone()) {
+                    *value = self.integrand.evaluate(&mut at(index));
+                }
             }
             self.add(count);
+            first = group.end;
         }
+        ControlFlow::Continue(())
     }
 }
 
@@ -325,12 +323,10 @@ impl<I: Integrand> Visit for Careful<'_, I> {
 
     fn points<S: Sampler>(
         &mut self,
-        first: u64,
-        points: impl Iterator<Item = S>,
+        mut indices: Range<u64>,
+        at: impl Fn(u64) -> S,
     ) -> ControlFlow<()> {
-        (first..)
-            .zip(points)
-            .try_for_each(|(index, u)| self.point(index, u))
+        indices.try_for_each(|index| self.point(index, at(index)))
     }
 }
 

@@ -29,7 +29,7 @@ pub use antithetic::Antithetic;
 pub use control_variate::ControlVariate;
 pub use importance::Importance;
 pub use joint::{Joint, Ratio, ratio};
-pub(crate) use mapped::Image;
+pub(crate) use mapped::Bin;
 pub use mapped::{ImportanceMap, Mapped};
 pub use mixture::{Heuristic, Mixture, MultiSample};
 pub use roulette::{Roulette, Survival};

@@ -26,6 +26,7 @@ fn reference(name: &'static str, size: usize, samples: u64) -> Reference {
         image: image.downsampled(image.width() / size).unwrap(),
         samples,
         batches: 128,
+        correlated: 1.0,
     }
 }
 

@@ -10,7 +10,7 @@ use estimand::path::light::{AreaLights, Constant, NoEnvironment, NoLight};
 use estimand::path::sensor::Pinhole;
 use estimand::path::shape::{Cylinder, Disk, Flat, Mesh, Primitive, Shape, Sphere, cuboid};
 use estimand::path::texture::{Bitmap, Filter, Texture};
-use estimand::path::{Instances, Object, Paths, Ray, Scene, Surface, View};
+use estimand::path::{Instances, Object, Paths, Ray, Scene, Segment, Surface, View};
 use estimand::points::{HashedOwen, PointSet, Sobol};
 use estimand::{Average, Sampler};
 use glam::{Affine3A, Mat3A, Quat, Vec2, Vec3, Vec3A};
@@ -558,4 +558,31 @@ fn hidden_lights_light_but_are_not_seen() {
         assert_eq!(render(hiding, [0.0, 1.0, 2.0], target), 0.0);
     }
     assert_eq!(render(all, [0.0, 1.0, 2.0], [0.0, 1.9, 0.0]), 0.25);
+}
+
+#[test]
+fn rays_along_the_axes_meet_a_mesh_whatever_the_sign_of_their_zeros() {
+    let scene: Bare = Scene::new(vec![Object::mesh(pyramid(), white())], NoEnvironment).unwrap();
+    for zero in [0.0, -0.0] {
+        for (origin, direction) in [
+            ([0.1, 0.2, -2.0], [zero, zero, 1.0]),
+            ([0.1, 0.2, 4.0], [zero, zero, -1.0]),
+            ([-3.0, 0.1, 0.2], [1.0, zero, zero]),
+            ([0.1, 3.0, 0.2], [zero, -1.0, zero]),
+        ] {
+            let ray = Ray {
+                origin: Vec3A::from(origin),
+                direction: Vec3A::from(direction),
+            };
+            let here = Surface {
+                point: ray.origin,
+                normal: ray.direction,
+                margin: 0.0,
+                detail: (),
+            };
+            assert!(scene.meet(&ray).is_some(), "{ray:?}");
+            let way = Segment::along(&here, ray.direction);
+            assert!(scene.occluded(&way), "{ray:?}");
+        }
+    }
 }

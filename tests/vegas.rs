@@ -147,11 +147,9 @@ fn a_callback_stops_it_within_an_iteration() {
         panic!("another error: {early}");
     };
     assert!((100_000..4_000_000).contains(&used), "{used}");
-    // One iteration is complete, one was begun.
+    // One iteration is complete, or two where the machine was fast.
     let estimate = stop_at(5_000_000).unwrap();
-    assert_eq!(
-        (estimate.stop, estimate.replicates.len()),
-        (Stop::Cancelled, 1)
-    );
+    assert_eq!(estimate.stop, Stop::Cancelled);
+    assert!((1..=2).contains(&estimate.replicates.len()));
     assert!(estimate.interval(0.9999).unwrap().contains(PEAK));
 }

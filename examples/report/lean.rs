@@ -31,7 +31,7 @@ pub(crate) fn add(report: &mut Report) -> Result<(), Failure> {
     );
     let mut table = Table::new([
         Column::text("scene"),
-        Column::text("left out"),
+        Column::prose("left out"),
         Column::number("coordinates a path"),
         Column::number("in general"),
         Column::number("time of a path"),

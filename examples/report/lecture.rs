@@ -70,10 +70,10 @@ pub(crate) fn add(report: &mut Report) -> Result<(), Failure> {
     claims.extend(numbers::claims(report, &mut charts)?);
     claims.extend(light::claims(report)?);
     let mut table = Table::new([
-        Column::text("claim"),
-        Column::text("measured"),
-        Column::text("confidence"),
+        Column::prose("claim"),
         Column::text("verdict"),
+        Column::prose("measured"),
+        Column::text("confidence"),
     ]);
     let mut data = Vec::new();
     for claim in claims {
@@ -82,9 +82,9 @@ pub(crate) fn add(report: &mut Report) -> Result<(), Failure> {
         }));
         table.row([
             Cell::from(claim.claim),
+            claim.verdict.cell(),
             Cell::from(claim.measured),
             Cell::from(claim.confidence),
-            claim.verdict.cell(),
         ]);
     }
     std::fs::write(

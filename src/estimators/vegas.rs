@@ -12,14 +12,15 @@ use crate::{
 };
 
 mod adaptation;
+mod grid;
 
 use adaptation::{Adaptation, Pass};
 
 /// Adaptive integration of peaked and badly scaled integrands: an [`ImportanceMap`] that learns from iteration to
 /// iteration, and a grid of strata whose numbers of points follow their variances.[^lepage]
 ///
-/// The first half of the iterations, five at most, only trains and is then forgotten. The others go on learning; each is
-/// unbiased whatever was learned before it, and their mean is weighted by their numbers of points, not by their claimed errors,
+/// The first half of the iterations, five at most, only trains and is then forgotten. The others go on learning, each
+/// less than the one before, so that what they learn is averaged; each is unbiased whatever was learned before it, and their mean is weighted by their numbers of points, not by their claimed errors,
 /// which would bias it. An estimate that is stopped before is made of what training iterations there are.
 ///
 /// A peak that no point of the first iterations hits is not there for it: the estimate then comes with
@@ -113,8 +114,6 @@ impl Vegas {
     ///
     /// [`Error::Refused`] for no dimensions, and for fewer than 40 evaluations.
     pub fn new(dimensions: u32, count: u64, seed: u64) -> Result<Self, Error> {
-        /// Points a bin and iteration, about.
-        const FILL: u64 = 20;
         if dimensions == 0 {
             let domain = "at least 1";
             return Err(Error::refused("number of dimensions", domain, dimensions));
@@ -127,7 +126,11 @@ impl Vegas {
         let iterations = (count / ENOUGH).clamp(2, 10).max(count / MOST);
         let iterations = u32::try_from(iterations).unwrap_or(u32::MAX);
         let each = count / u64::from(iterations);
-        let bins = usize::try_from(each / FILL).unwrap_or(usize::MAX);
+        /// The fewest points of an iteration that a bin should learn from: with fewer the map follows chance, and intervals
+        /// on narrow peaks hold the truth too seldom.
+        const LEARN: u64 = 60;
+        // Narrow bins follow the integrand, wide ones have many points to learn from: as many points a bin as bins.
+        let bins = usize::try_from(each.isqrt().min(each / LEARN)).unwrap_or(usize::MAX);
         Ok(Self {
             count,
             iterations,
@@ -159,7 +162,7 @@ impl Vegas {
         self
     }
 
-    /// The same with another exponent of damping in `[0, 2]`: 0 learns nothing, the default is 0.5.
+    /// The same with another exponent of damping in `[0, 2]`: 0 learns nothing, the default is 0.5, much more than 1 swings.
     ///
     /// # Errors
     ///
@@ -390,7 +393,10 @@ impl Progressive for Vegas {
                 used: points,
                 training: iterations.len() < self.training(),
             });
-            adaptation.learn(pass, self.damping, self.each());
+            // The first half of the iterations finds the place, a half of the way each; the others average what they
+            // learn.
+            let settled = iterations.len().saturating_sub(self.training()) + 2;
+            adaptation.learn(pass, self.damping / settled as f64, self.each());
             *open = None;
         }
         Ok(())

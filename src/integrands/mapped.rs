@@ -39,12 +39,21 @@ pub struct ImportanceMap {
     axes: Vec<Vec<f64>>,
 }
 
-/// The image of one coordinate.
+/// One bin of an axis.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Image {
-    pub(crate) x: f64,
+pub(crate) struct Bin {
+    start: f64,
+    width: f64,
     pub(crate) jacobian: f64,
-    pub(crate) bin: usize,
+}
+
+impl Bin {
+    /// The point of the bin at the part `within` of its width.
+    #[inline]
+    pub(crate) fn image(&self, within: f64) -> f64 {
+        const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
+        (self.start + within * self.width).min(ALMOST_ONE)
+    }
 }
 
 impl ImportanceMap {
@@ -78,29 +87,23 @@ impl ImportanceMap {
         self.axes.first().map_or(1, |axis| axis.len() - 1)
     }
 
-    /// Where the coordinate `u` of an axis goes; `None` past the last axis.
-    #[inline]
-    pub(crate) fn image(&self, dimension: usize, u: f64) -> Option<Image> {
-        const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
-        let axis = self.axes.get(dimension)?;
-        let bins = axis.len() - 1;
-        let scaled = u * bins as f64;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "below the number of bins"
-        )]
-        let bin = (scaled as usize).min(bins - 1);
-        let width = axis[bin + 1] - axis[bin];
-        Some(Image {
-            x: (axis[bin] + (scaled - bin as f64) * width).min(ALMOST_ONE),
-            jacobian: width * bins as f64,
-            bin,
-        })
+    /// The bins of all axes, one axis after the other.
+    pub(crate) fn table(&self) -> Vec<Bin> {
+        let bins = |axis: &Vec<f64>| {
+            let number = axis.len() as f64 - 1.0;
+            let bin = move |ends: &[f64]| Bin {
+                start: ends[0],
+                width: ends[1] - ends[0],
+                jacobian: (ends[1] - ends[0]) * number,
+            };
+            axis.windows(2).map(bin).collect::<Vec<_>>()
+        };
+        self.axes.iter().flat_map(bins).collect()
     }
 
     /// Moves the ends of the bins so that each holds the same part of `weights`, the mean square of the integrand in each bin,
-    /// `damping` slowing it down from 1 to 0. Weights that are all zero or not finite change nothing.
+    /// as far as `damping` lets it: shares follow the weights to this power, all the way at 1/2, and not at all at 0. Weights
+    /// that are all zero or not finite change nothing.
     ///
     /// In the long run no bin is more than twice as wide as its neighbours.
     pub(crate) fn refine(&mut self, weights: &[Vec<f64>], damping: f64) {
@@ -117,14 +120,7 @@ impl ImportanceMap {
                     (left + 6.0 * weights[bin] + right) / (8.0 * sum)
                 })
                 .collect();
-            let mut damped: Vec<f64> = smooth
-                .iter()
-                .map(|&d| match d {
-                    d if d <= 0.0 => 0.0,
-                    d if d >= 1.0 => 1.0,
-                    d => ((1.0 - d) / -d.ln()).powf(damping),
-                })
-                .collect();
+            let mut damped: Vec<f64> = smooth.iter().map(|share| share.powf(damping)).collect();
             grade(&mut damped, axis);
             let total: f64 = damped.iter().sum();
             let share = total / damped.len() as f64;
@@ -165,29 +161,35 @@ fn grade(shares: &mut [f64], axis: &[f64]) {
 }
 
 /// An integrand at the images of the points under an [`ImportanceMap`], weighted so that its integral stays the same.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 #[must_use]
-pub struct Mapped<'a, I> {
+pub struct Mapped<I> {
     integrand: I,
-    map: &'a ImportanceMap,
+    bins: Vec<Bin>,
+    /// How many bins an axis has.
+    number: usize,
 }
 
-impl<'a, I: Integrand> Mapped<'a, I> {
+impl<I: Integrand> Mapped<I> {
     /// `integrand` under `map`.
-    pub const fn new(integrand: I, map: &'a ImportanceMap) -> Self {
-        Self { integrand, map }
+    pub fn new(integrand: I, map: &ImportanceMap) -> Self {
+        Self {
+            integrand,
+            bins: map.table(),
+            number: map.bins(),
+        }
     }
 }
 
-impl<I: Integrand> Integrand for Mapped<'_, I> {
+impl<I: Integrand> Integrand for Mapped<I> {
     type Value = I::Value;
 
     #[inline]
     fn evaluate<S: Sampler>(&self, u: &mut S) -> I::Value {
         let mut u = Images {
             inner: u,
-            map: self.map,
-            dimension: 0,
+            bins: &self.bins,
+            number: self.number,
             jacobian: 1.0,
         };
         let value = self.integrand.evaluate(&mut u);
@@ -203,8 +205,9 @@ impl<I: Integrand> Integrand for Mapped<'_, I> {
 /// The images of coordinates.
 struct Images<'a, S> {
     inner: &'a mut S,
-    map: &'a ImportanceMap,
-    dimension: usize,
+    /// The bins of the axes that are left.
+    bins: &'a [Bin],
+    number: usize,
     jacobian: f64,
 }
 
@@ -212,15 +215,19 @@ impl<S: Sampler> Sampler for Images<'_, S> {
     #[inline]
     fn next_1d(&mut self) -> f64 {
         let u = self.inner.next_1d();
-        let dimension = self.dimension;
-        self.dimension += 1;
-        match self.map.image(dimension, u) {
-            Some(image) => {
-                self.jacobian *= image.jacobian;
-                image.x
-            }
-            None => u,
-        }
+        let Some((axis, left)) = self.bins.split_at_checked(self.number) else {
+            return u;
+        };
+        self.bins = left;
+        let scaled = u * axis.len() as f64;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "below the number of bins"
+        )]
+        let bin = (scaled as usize).min(axis.len() - 1);
+        self.jacobian *= axis[bin].jacobian;
+        axis[bin].image(scaled - bin as f64)
     }
 }
 

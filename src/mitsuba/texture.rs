@@ -116,8 +116,9 @@ pub(super) fn describe(mut query: Query<'_>, role: Role) -> Result<Texture, Scen
     let texture = match query.plugin() {
         "bitmap" => bitmap(&mut query)?,
         "checkerboard" => {
-            let color0 = query.texture_or("color0", role, 0.4)?;
-            let color1 = query.texture_or("color1", role, 0.2)?;
+            // Whatever the board is for, Mitsuba reads its colours as fractions.
+            let color0 = query.texture_or("color0", Role::Fraction, 0.4)?;
+            let color1 = query.texture_or("color1", Role::Fraction, 0.2)?;
             let to_uv = to_uv(&mut query)?;
             Texture::Checkerboard(Arc::new(Checkerboard {
                 color0,

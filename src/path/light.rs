@@ -61,7 +61,8 @@ pub trait Light: Sync + Sized {
     fn emitted(&self, emitter: u32, from: Vec3A, surface: &Surface) -> Emission;
 }
 
-/// A shape that emits light from its outer side, from each point the same to every direction.
+/// A shape that emits light from its outer side, from each point the same to every direction. The outer side is that of
+/// the true normals, whatever the normals that a mesh interpolates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Emitter {
     /// The shape.

@@ -188,7 +188,10 @@ mod tests {
         )];
         for k in 0..12 {
             let corners = [0; 3].map(|_| [0; 3].map(|_| 1.2 * random() - 0.6));
-            let object = Object::new([Flat::triangle(corners)?], Lambertian::new([0.5; 3])?);
+            let object = Object::new(
+                [Flat::triangle(corners)?],
+                Lambertian::new([0.5; 3])?.outside(),
+            );
             let light = lit && k < 4;
             objects.push(if light {
                 object.emitting([1.0, k as f32, 2.0])?

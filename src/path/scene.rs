@@ -256,7 +256,7 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
             };
             Some(Optics {
                 albedo: law.albedo,
-                inner: true,
+                inner: law.has_inside(),
                 emitted,
             })
         };

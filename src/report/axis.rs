@@ -118,9 +118,10 @@ mod tests {
         let many = labels(&numbers, -16.0, 0.0);
         assert!(many.len() <= 8, "{many:?}");
         assert_eq!(
-            labels(&numbers, -1.1, 0.1),
+            labels(&numbers, -1.05, 0.1),
             ["0.1", "0.2", "0.3", "0.5", "1"]
         );
+        assert_eq!(labels(&numbers, -1.2, 0.1), ["0.1", "0.3", "1"]);
         assert_eq!(many.last().unwrap(), "1");
     }
 }

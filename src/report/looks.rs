@@ -10,9 +10,9 @@ pub(super) fn dash(index: usize) -> &'static str {
     ["none", "7 3", "2 3", "9 3 2 3", "5 2 1 2 1 2"][index % 5]
 }
 
-/// The marker of curve number `index` at a place, as the data of an SVG path, and whether it is filled.
+/// The marker of curve number `index` at a place, as the data of an SVG path.
 pub(super) fn marker(index: usize, x: f64, y: f64) -> String {
-    // Corners relative to the place; one letter more for what is round or open.
+    // Corners relative to the place.
     let polygon = |corners: &[[f64; 2]]| {
         let mut path = String::new();
         for (corner, [dx, dy]) in corners.iter().enumerate() {

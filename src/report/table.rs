@@ -36,6 +36,14 @@ impl Column {
         }
     }
 
+    /// A column of sentences, kept wide enough to be read on narrow screens too.
+    pub fn prose(heading: impl Into<String>) -> Self {
+        Self {
+            heading: heading.into(),
+            class: "prose",
+        }
+    }
+
     /// A column of numbers, set to the right.
     pub fn number(heading: impl Into<String>) -> Self {
         Self {

@@ -3,7 +3,7 @@
 use estimand::path::bsdf::{Dielectric, Lambertian};
 use estimand::path::filter::BoxFilter;
 use estimand::path::light::Emission;
-use estimand::path::light::{AreaLights, NoEnvironment, NoLight};
+use estimand::path::light::{AreaLights, LightTree, NoEnvironment, NoLight};
 use estimand::path::sensor::{Pinhole, Sensor};
 use estimand::path::shape::{Flat, Sphere};
 use estimand::path::{Image, Object, Paths, Pixel, Ray, Scene, View, scenes};
@@ -23,8 +23,10 @@ fn parts_must_fit_their_types() {
     };
     let lamp = || ball().emitting([1.0; 3]).unwrap();
     let refused = |result: Result<(), estimand::Error>| result.unwrap_err().to_string();
-    let dark = Scene::<_, AreaLights, _>::new(vec![ball()], NoEnvironment).map(drop);
-    assert!(refused(dark).contains("power of all lights"));
+    // No lights are lights too; but a tree has a root.
+    assert!(Scene::<_, AreaLights, _>::new(vec![ball()], NoEnvironment).is_ok());
+    let dark = Scene::<_, LightTree, _>::new(vec![ball()], NoEnvironment).map(drop);
+    assert!(refused(dark).contains("number of emitters"));
     let bright = Scene::<_, NoLight, _>::new(vec![lamp()], NoEnvironment).map(drop);
     assert!(refused(bright).contains("number of emitters must be 0"));
     assert!(refused(Lambertian::new([0.5, f32::NAN, 0.5]).map(drop)).contains("NaN"));

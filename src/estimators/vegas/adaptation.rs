@@ -1,54 +1,16 @@
 //! One iteration of VEGAS: its points, and what is learned from them.
 
+use core::ops::Range;
+
 use rand::rngs::Xoshiro256PlusPlus;
 
 use super::super::monte_carlo::seeded;
+use super::grid::{Axis, Grid, advance};
 use crate::block::Block;
-use crate::integrands::{Image, ImportanceMap};
+use crate::integrands::{Bin, ImportanceMap};
+use crate::points::{Independent, PointSet};
 use crate::stratum::{Stratum, apportion};
-use crate::{Error, Integrand, Sampler, Stream, Value, hash, reduce};
-
-/// The strata: a grid of equal cells over the first axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Grid {
-    axes: usize,
-    cells: u64,
-    strata: usize,
-}
-
-impl Grid {
-    /// As many cells as leave eight points to each, and two cells along an axis at least.
-    fn new(dimensions: usize, count: u64) -> Self {
-        let most = (count / 8).min(1 << 16);
-        let mut grid = Self {
-            axes: 0,
-            cells: 1,
-            strata: 1,
-        };
-        let power = |cells: u64| {
-            u32::try_from(dimensions)
-                .ok()
-                .and_then(|d| cells.checked_pow(d))
-        };
-        let mut cells = 1;
-        while power(cells + 1).is_some_and(|strata| strata <= most) {
-            cells += 1;
-        }
-        if let Some(strata) = power(cells).filter(|_| cells > 1) {
-            grid = Self {
-                axes: dimensions,
-                cells,
-                strata: usize::try_from(strata).unwrap_or(1),
-            };
-        }
-        grid
-    }
-
-    fn evenly(&self, count: u64) -> Vec<u64> {
-        apportion(&vec![1.0; self.strata], count)
-    }
-}
+use crate::{Cursor, Error, Integrand, Sampler, Stream, Value, hash, reduce};
 
 /// What is adapted from iteration to iteration.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,12 +28,19 @@ pub(super) struct Adaptation<V> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Pass<V> {
     pub(super) strata: Vec<Stratum<V>>,
-    /// Sums of squares in each bin of each axis.
-    squares: Vec<Vec<f64>>,
-    hits: Vec<Vec<f64>>,
+    /// The squares of the values in each bin, axis by axis.
+    squares: Vec<Squares>,
     largest: V,
     /// How many parts of the iteration are in it.
     parts: u64,
+}
+
+/// Squares of values.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Squares {
+    sum: f64,
+    count: f64,
 }
 
 /// A part of an iteration: the points `range`, counted through all strata.
@@ -84,11 +53,11 @@ struct Part<V> {
 impl<V: Value> Adaptation<V> {
     /// Iterations of about `count` points, beginning with `map`.
     pub(super) fn new(map: ImportanceMap, count: u64) -> Self {
-        let strata = Grid::new(map.dimensions(), count);
+        let strata = Grid::new(map.dimensions(), count, map.bins());
         Self {
             map,
-            strata,
             counts: strata.evenly(count),
+            strata,
             scale: V::ZERO,
         }
     }
@@ -149,12 +118,13 @@ impl<V: Value> Adaptation<V> {
         let end = (begun..self.parts())
             .find(|&part| self.first_of(part) >= count)
             .unwrap_or(self.parts());
+        let bins = self.map.table();
         reduce::in_order(
             end - begun,
             |job| {
                 let part = begun + job;
                 let range = self.first_of(part)..self.first_of(part + 1);
-                self.part(integrand, hash::hash(seed, part), &ends, range)
+                self.part(integrand, seed, &bins, &ends, range)
             },
             |part: Part<V>| {
                 if let Some(offender) = part.offender {
@@ -163,13 +133,9 @@ impl<V: Value> Adaptation<V> {
                 for (here, there) in pass.strata[part.first..].iter_mut().zip(&part.pass.strata) {
                     here.merge(there);
                 }
-                for (here, there) in [
-                    (&mut pass.squares, &part.pass.squares),
-                    (&mut pass.hits, &part.pass.hits),
-                ] {
-                    for (here, there) in here.iter_mut().flatten().zip(there.iter().flatten()) {
-                        *here += there;
-                    }
+                for (here, there) in pass.squares.iter_mut().zip(&part.pass.squares) {
+                    here.sum += there.sum;
+                    here.count += there.count;
                 }
                 pass.largest = pass.largest.zip(part.pass.largest, f64::max);
                 pass.parts += 1;
@@ -199,28 +165,28 @@ impl<V: Value> Adaptation<V> {
     }
 
     fn empty(&self, strata: usize) -> Pass<V> {
-        let bins = vec![vec![0.0; self.map.bins()]; self.map.dimensions()];
         Pass {
             strata: vec![Stratum::EMPTY; strata],
-            squares: bins.clone(),
-            hits: bins,
+            squares: vec![Squares::default(); self.map.bins() * self.map.dimensions()],
             largest: V::ZERO,
             parts: 0,
         }
     }
 
+    /// The points `range`; `ends` are the numbers of points up to and with each stratum.
     fn part<I: Integrand>(
         &self,
         integrand: &I,
         seed: u64,
+        bins: &[Bin],
         ends: &[u64],
-        range: core::ops::Range<u64>,
+        range: Range<u64>,
     ) -> Part<V>
     where
         I::Value: Value<Wide = V>,
     {
-        /// Values that are summed at once.
-        const RUN: u64 = 1024;
+        /// Coordinates computed ahead.
+        const AHEAD: usize = 4096;
         let first = ends.partition_point(|&end| end <= range.start);
         let last = ends.partition_point(|&end| end < range.end);
         let mut part = Part {
@@ -228,24 +194,40 @@ impl<V: Value> Adaptation<V> {
             pass: self.empty((last + 1).saturating_sub(first)),
             offender: None,
         };
-        let mut stream = Stream(seeded::<Xoshiro256PlusPlus>(seed));
+        let points = Independent::new(seed);
         let width = self.map.dimensions();
+        let dimensions = u32::try_from(width).expect("the number of axes is a u32");
+        // A map without axes needs rows all the same, if empty ones.
+        let stride = width.max(1);
+        let rows = (AHEAD / stride).max(1);
+        let mut ahead = vec![0.0; rows * stride];
+        let mut filled = range.start..range.start;
         let mut hits = vec![Hit { bin: 0, x: 0.0 }; width];
         let mut values = Vec::new();
         let mut index = range.start;
         let mut stratum = first;
+        let mut place = self.strata.place(first, self.map.bins());
         while index < range.end {
+            if index == filled.end {
+                let left = range.end - index;
+                let count = usize::try_from(left).map_or(rows, |left| left.min(rows));
+                points.fill(index, 0..dimensions, &mut ahead[..count * width]);
+                filled = index..index + count as u64;
+            }
             while ends[stratum] <= index {
                 stratum += 1;
+                advance(&mut place);
             }
-            let end = ends[stratum].min(range.end).min(index + RUN);
-            let mut block = Block::EMPTY;
+            let end = ends[stratum].min(filled.end);
+            let row = usize::try_from(index - filled.start).expect("it is in memory");
+            let prefixes = ahead[row * stride..].chunks_exact(stride);
             values.clear();
-            while index < end {
+            for (index, prefix) in (index..end).zip(prefixes) {
                 let mut u = Trained {
-                    inner: &mut stream,
-                    state: self,
-                    stratum: stratum as u64,
+                    inner: Cursor::with_prefix(&points, index, &prefix[..width]),
+                    bins,
+                    number: self.map.bins(),
+                    place: &place,
                     hits: &mut hits,
                     dimension: 0,
                     jacobian: 1.0,
@@ -264,7 +246,6 @@ impl<V: Value> Adaptation<V> {
                     });
                     break;
                 }
-                block.push(value);
                 values.push(value);
                 let mut square = 0.0;
                 let _ = value.zip(self.scale, |value, scale| {
@@ -275,28 +256,13 @@ impl<V: Value> Adaptation<V> {
                     }
                     value
                 });
-                for (axis, hit) in hits[..read].iter().enumerate() {
-                    part.pass.squares[axis][hit.bin] += square;
-                    part.pass.hits[axis][hit.bin] += 1.0;
+                for hit in &hits[..read] {
+                    let squares = &mut part.pass.squares[hit.bin];
+                    squares.sum += square;
+                    squares.count += 1.0;
                 }
-                index += 1;
             }
-            let run = block.piece().map_or_else(
-                || {
-                    let first = values.first().copied().unwrap_or(V::ZERO);
-                    Stratum {
-                        moments: values.iter().copied().collect(),
-                        low: values.iter().fold(first, |low, x| low.zip(*x, f64::min)),
-                        high: values.iter().fold(first, |high, x| high.zip(*x, f64::max)),
-                    }
-                },
-                |piece| Stratum {
-                    moments: piece.moments,
-                    low: piece.low,
-                    high: piece.high,
-                },
-            );
-            if !values.is_empty() {
+            if let Some(run) = summed(&values) {
                 part.pass.strata[stratum - first].merge(&run);
                 let size = run.low.zip(run.high, |low, high| low.abs().max(high.abs()));
                 part.pass.largest = part.pass.largest.zip(size, f64::max);
@@ -304,27 +270,16 @@ impl<V: Value> Adaptation<V> {
             if part.offender.is_some() {
                 break;
             }
+            index = end;
         }
         part
     }
 
     /// Adapts the map to where the squares are, and the numbers of points to where the spread is.
     pub(super) fn learn(&mut self, pass: &Pass<V>, damping: f64, count: u64) {
-        /// Points follow the deviation of their stratum to this power: less than 1, because it is uncertain.
-        const FOLLOW: f64 = 0.75;
         const EVEN: f64 = 0.2;
-        let weights: Vec<Vec<f64>> = pass
-            .squares
-            .iter()
-            .zip(&pass.hits)
-            .map(|(squares, hits)| {
-                squares
-                    .iter()
-                    .zip(hits)
-                    .map(|(square, hits)| if *hits > 0.0 { square / hits } else { 0.0 })
-                    .collect()
-            })
-            .collect();
+        let bins = self.map.bins();
+        let weights: Vec<_> = pass.squares.chunks_exact(bins).map(means).collect();
         self.map.refine(&weights, damping);
         self.scale = pass.largest;
         let scores: Vec<f64> = pass
@@ -339,7 +294,9 @@ impl<V: Value> Adaptation<V> {
                     }
                     deviation
                 });
-                f64::powf(square, 0.5 * FOLLOW)
+                // The deviation to the power of 3/4: less than 1, because it is uncertain.
+                let root = f64::sqrt(square).sqrt();
+                root * root.sqrt()
             })
             .collect();
         // A part is spread evenly: a stratum that looked constant may not be.
@@ -352,43 +309,82 @@ impl<V: Value> Adaptation<V> {
     }
 }
 
+/// The mean squares of the bins of an axis. Of a bin without points nothing is known: it has the mean of the nearest
+/// bins with points, so that nothing is learned where nothing was seen.
+fn means(axis: &[Squares]) -> Vec<f64> {
+    let known = |squares: &Squares| (squares.count > 0.0).then(|| squares.sum / squares.count);
+    (0..axis.len())
+        .map(|bin| {
+            let below = axis[..=bin].iter().rev().find_map(known);
+            let above = axis[bin..].iter().find_map(known);
+            match (below, above) {
+                (Some(below), Some(above)) => 0.5 * (below + above),
+                (one, other) => one.or(other).unwrap_or(0.0),
+            }
+        })
+        .collect()
+}
+
+/// What the values of a run of points are together; `None` if there are none.
+fn summed<V: Value>(values: &[V]) -> Option<Stratum<V>> {
+    let &first = values.first()?;
+    let mut block = Block::EMPTY;
+    block.extend(values, |value| value);
+    Some(match block.piece() {
+        Some(piece) => Stratum {
+            moments: piece.moments,
+            low: piece.low,
+            high: piece.high,
+        },
+        None => Stratum {
+            moments: values.iter().copied().collect(),
+            low: values.iter().fold(first, |low, x| low.zip(*x, f64::min)),
+            high: values.iter().fold(first, |high, x| high.zip(*x, f64::max)),
+        },
+    })
+}
+
 /// The images of coordinates in a stratum, each remembered.
-struct Trained<'a, S, V> {
-    inner: &'a mut S,
-    state: &'a Adaptation<V>,
-    /// The number of the stratum in what axes are left.
-    stratum: u64,
+struct Trained<'a, S> {
+    inner: S,
+    bins: &'a [Bin],
+    /// How many bins an axis has.
+    number: usize,
+    place: &'a [Axis],
     hits: &'a mut [Hit],
     dimension: usize,
     jacobian: f64,
 }
 
-impl<S: Sampler, V> Sampler for Trained<'_, S, V> {
+impl<S: Sampler> Sampler for Trained<'_, S> {
     #[inline]
     fn next_1d(&mut self) -> f64 {
-        let mut u = self.inner.next_1d();
+        let u = self.inner.next_1d();
         let dimension = self.dimension;
         self.dimension += 1;
-        let grid = self.state.strata;
-        if dimension < grid.axes {
-            let cell = self.stratum % grid.cells;
-            self.stratum /= grid.cells;
-            u = (cell as f64 + u) / grid.cells as f64;
-        }
-        match self.state.map.image(dimension, u) {
-            Some(Image { x, jacobian, bin }) => {
-                self.jacobian *= jacobian;
-                self.hits[dimension] = Hit { bin, x };
-                x
-            }
-            None => u,
-        }
+        let Some(axis) = self.place.get(dimension) else {
+            return u;
+        };
+        let scaled = (axis.cell + u) * axis.scale;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "below the number of bins"
+        )]
+        let bin = (scaled as usize).min(self.number - 1);
+        let within = scaled - bin as f64;
+        let bin = dimension * self.number + bin;
+        let x = self.bins[bin].image(within);
+        self.jacobian *= self.bins[bin].jacobian;
+        self.hits[dimension] = Hit { bin, x };
+        x
     }
 }
 
 /// Where a coordinate went.
 #[derive(Clone, Copy)]
 struct Hit {
+    /// Its bin, counted through all axes.
     bin: usize,
     x: f64,
 }

@@ -25,12 +25,14 @@ pub(super) trait Make: bsdf::Bsdf + fmt::Debug + Sized + 'static {
 
 impl Make for Lambertian {
     fn make(bsdf: &Bsdf, _: &mut Images) -> Result<Self, String> {
-        let color = match bsdf {
-            Bsdf::TwoSided { front, .. } => diffuse_color(front),
-            _ => diffuse_color(bsdf),
+        let of = |bsdf: &Bsdf| {
+            let color = diffuse_color(bsdf).ok_or("a law of scattering that is not diffuse")?;
+            Self::new(narrow(color)).map_err(|e| e.to_string())
         };
-        let color = color.ok_or("a law of scattering that is not diffuse")?;
-        Self::new(narrow(color)).map_err(|e| e.to_string())
+        match bsdf {
+            Bsdf::TwoSided { front, .. } => of(front),
+            _ => of(bsdf).map(Self::outside),
+        }
     }
 }
 

@@ -80,12 +80,12 @@ impl Needs {
     }
 }
 
-/// Whether it is ideally diffuse on both sides, with one colour.
+/// Whether it is ideally diffuse with one colour, on the outer side or alike on both.
 pub(super) fn is_lambertian(bsdf: &Bsdf) -> bool {
     match bsdf {
         Bsdf::Diffuse {
-            reflectance: Texture::Constant(color),
-        } => *color == glam::DVec3::ZERO,
+            reflectance: Texture::Constant(_),
+        } => true,
         Bsdf::TwoSided { front, back } => {
             front == back
                 && matches!(

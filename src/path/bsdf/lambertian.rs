@@ -16,6 +16,7 @@ use crate::{Error, Sampler};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lambertian {
     pub(in crate::path) albedo: Vec3A,
+    sides: Sides,
 }
 
 impl Lambertian {
@@ -27,8 +28,35 @@ impl Lambertian {
     pub fn new(albedo: [f32; 3]) -> Result<Self, Error> {
         Ok(Self {
             albedo: color::fraction("albedo", albedo)?,
+            sides: Sides::Both,
         })
     }
+
+    /// The same on the outer side alone. The inner side is black.
+    #[must_use]
+    pub fn outside(mut self) -> Self {
+        self.sides = Sides::Outer;
+        self
+    }
+
+    /// Whether the inner side scatters as the outer one does.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn has_inside(&self) -> bool {
+        self.sides == Sides::Both
+    }
+
+    /// Whether light is scattered towards `out`, given its cosine.
+    #[inline]
+    fn is_seen(&self, cosine: f32) -> bool {
+        self.sides == Sides::Both || cosine > 0.0
+    }
+}
+
+/// Which sides scatter light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sides {
+    Both,
+    Outer,
 }
 
 impl Lambertian {
@@ -64,7 +92,7 @@ impl Law for Lambertian {
 
     #[inline]
     fn evaluate(&self, (): &(), out: Vec3A, into: Vec3A) -> Scattering {
-        if out.z * into.z <= 0.0 {
+        if out.z * into.z <= 0.0 || !self.is_seen(out.z) {
             return Scattering::NONE;
         }
         self.reflected(into.z.abs())
@@ -72,7 +100,7 @@ impl Law for Lambertian {
 
     #[inline]
     fn sample<S: Sampler>(&self, (): &(), out: Vec3A, u: &mut S) -> Option<Scattered> {
-        let scattered = self.draw(u)?;
+        let scattered = self.draw(u).filter(|_| self.is_seen(out.z))?;
         let mut direction = scattered.direction;
         direction.z = direction.z.copysign(out.z);
         Some(Scattered {
@@ -97,7 +125,8 @@ impl Bsdf for Lambertian {
     #[inline]
     fn evaluate(&self, at: &Surface, out: Vec3A, into: Vec3A) -> Scattering {
         let cosine = at.normal.dot(into);
-        if cosine * at.normal.dot(out) <= 0.0 {
+        let facing = at.normal.dot(out);
+        if cosine * facing <= 0.0 || !self.is_seen(facing) {
             return Scattering::NONE;
         }
         self.reflected(cosine.abs())
@@ -105,8 +134,9 @@ impl Bsdf for Lambertian {
 
     #[inline]
     fn sample<S: Sampler>(&self, at: &Surface, out: Vec3A, u: &mut S) -> Option<Scattered> {
-        let scattered = self.draw(u)?;
-        let normal = at.normal * 1.0_f32.copysign(at.normal.dot(out));
+        let facing = at.normal.dot(out);
+        let scattered = self.draw(u).filter(|_| self.is_seen(facing))?;
+        let normal = at.normal * 1.0_f32.copysign(facing);
         Some(Scattered {
             direction: Frame::around(normal).out(scattered.direction),
             ..scattered

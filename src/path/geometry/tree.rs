@@ -78,8 +78,7 @@ impl Tree {
         mut meet: impl FnMut(usize, f32) -> Option<f32>,
     ) -> Option<Found> {
         let mut hit = RayHit::none();
-        let scaled = limit * self.scale;
-        let whole = TreeRay::new(ray.origin * self.scale, ray.direction, 0.0, scaled);
+        let whole = self.ray(ray, limit);
         let found = self.tree.ray_traverse(whole, &mut hit, |so_far, slot| {
             meet(self.shape(slot), so_far.tmax / self.scale)
                 .map_or(f32::INFINITY, |distance| distance * self.scale)
@@ -98,8 +97,7 @@ impl Tree {
         limit: f32,
         mut meet: impl FnMut(usize, f32) -> bool,
     ) -> bool {
-        let scaled = limit * self.scale;
-        let segment = TreeRay::new(ray.origin * self.scale, ray.direction, 0.0, scaled);
+        let segment = self.ray(ray, limit);
         !self.tree.ray_traverse_miss(segment, |_, slot| {
             if meet(self.shape(slot), limit) {
                 0.0
@@ -107,6 +105,18 @@ impl Tree {
                 f32::INFINITY
             }
         })
+    }
+
+    /// The ray as the tree takes it: scaled, and without the zeros of negative sign, whose octant the tree takes for that of
+    /// the positive ones but whose inverses it does not.
+    #[inline]
+    fn ray(&self, ray: &Ray, limit: f32) -> TreeRay {
+        TreeRay::new(
+            ray.origin * self.scale,
+            ray.direction + Vec3A::ZERO,
+            0.0,
+            limit * self.scale,
+        )
     }
 
     /// What is in a slot of the tree.

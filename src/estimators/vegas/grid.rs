@@ -1,0 +1,112 @@
+//! The strata of VEGAS.
+
+use crate::stratum::apportion;
+
+/// The strata: a grid of cells, equal along each axis.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Grid {
+    /// How many cells each axis has. The strata are numbered with the first axis fastest.
+    cells: Vec<u64>,
+    pub(super) strata: usize,
+}
+
+impl Grid {
+    /// As many cells as leave eight points to each: the same along all axes, or one more along the first ones. Where they are
+    /// more than the `bins` of an axis, no cell lies in two bins: the jump of the map between them would decide the error.
+    pub(super) fn new(dimensions: usize, count: u64, bins: usize) -> Self {
+        let most = (count / 8).clamp(1, 1 << 16);
+        let mut cells = vec![1; dimensions];
+        let mut strata = 1;
+        for axis in (0..dimensions).cycle() {
+            let more = strata / cells[axis] * (cells[axis] + 1);
+            if more > most {
+                break;
+            }
+            cells[axis] += 1;
+            strata = more;
+        }
+        let bins = bins as u64;
+        for cells in &mut cells {
+            if *cells > bins {
+                *cells -= *cells % bins;
+            }
+        }
+        let strata: u64 = cells.iter().product();
+        Self {
+            cells,
+            strata: usize::try_from(strata).expect("at most 2^16"),
+        }
+    }
+
+    pub(super) fn evenly(&self, count: u64) -> Vec<u64> {
+        apportion(&vec![1.0; self.strata], count)
+    }
+
+    /// The place of `stratum`, under a map of `bins` bins.
+    pub(super) fn place(&self, stratum: usize, bins: usize) -> Vec<Axis> {
+        let mut rest = stratum as u64;
+        let axis = |&cells: &u64| {
+            let cell = rest % cells;
+            rest /= cells;
+            Axis {
+                cell: cell as f64,
+                cells: cells as f64,
+                scale: bins as f64 / cells as f64,
+            }
+        };
+        self.cells.iter().map(axis).collect()
+    }
+}
+
+/// Where a stratum is along an axis.
+#[derive(Clone, Copy)]
+pub(super) struct Axis {
+    pub(super) cell: f64,
+    cells: f64,
+    /// Bins a cell.
+    pub(super) scale: f64,
+}
+
+/// From the place of a stratum to that of the next.
+pub(super) fn advance(place: &mut [Axis]) {
+    for axis in place {
+        axis.cell += 1.0;
+        if axis.cell < axis.cells {
+            return;
+        }
+        axis.cell = 0.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strata_have_eight_points_and_are_walked_in_order() {
+        for (dimensions, count, bins, cells) in [
+            (1, 80, 50, vec![10]),
+            (1, 8 * 128, 17, vec![119]),
+            (2, 8 * 110, 10, vec![10, 10]),
+            (2, 8 * 110, 5, vec![10, 10]),
+            (2, 8 * 110, 11, vec![11, 10]),
+            (3, 8 * 30, 50, vec![3, 3, 3]),
+            (3, 8 * 36, 50, vec![4, 3, 3]),
+            (10, 8 * 7, 1, vec![2, 2, 1, 1, 1, 1, 1, 1, 1, 1]),
+            (2, 7, 3, vec![1, 1]),
+            (0, 100, 3, vec![]),
+        ] {
+            let grid = Grid::new(dimensions, count, bins);
+            assert_eq!(grid.cells, cells);
+            assert_eq!(grid.strata as u64, cells.iter().product::<u64>());
+            let mut walked = grid.place(0, 5);
+            for stratum in 0..grid.strata {
+                for (here, there) in walked.iter().zip(grid.place(stratum, 5)) {
+                    assert_eq!(here.cell, there.cell);
+                }
+                advance(&mut walked);
+            }
+        }
+    }
+}

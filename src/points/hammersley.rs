@@ -164,9 +164,8 @@ impl<S: DigitScramble> PointSet for Hammersley<S> {
         }
         if (start..end).contains(&self.axis) {
             let column = (self.axis - start) as usize;
-            let axis = block.out[column..].iter_mut().step_by(block.width);
-            for (u, index) in axis.zip(first..) {
-                *u = fraction(index % self.count, self.offset, self.count);
+            for (row, index) in block.out.chunks_exact_mut(block.width).zip(first..) {
+                row[column] = fraction(index % self.count, self.offset, self.count);
             }
         }
     }

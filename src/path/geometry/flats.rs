@@ -9,14 +9,19 @@ pub(super) const LANES: usize = 8;
 /// A number for each of them.
 pub(super) type Lanes = [f32; LANES];
 
-/// Which lanes are hit, the first in the lowest bit.
+/// A bit for each lane, the first the lowest.
+pub(super) type Bits = [u32; LANES];
+
+/// The bit of a lane where `set` holds. Numbers as wide as the distances, which vectors keep in lanes.
 #[inline(always)]
-pub(super) fn mask(hits: [bool; LANES]) -> u32 {
-    let mut bits = [0; LANES];
-    for lane in 0..LANES {
-        bits[lane] = u32::from(hits[lane]) << lane;
-    }
-    bits.iter().fold(0, |all, bit| all | bit)
+pub(super) fn bit(lane: usize, set: bool) -> u32 {
+    if set { 1 << lane } else { 0 }
+}
+
+/// All bits in one word.
+#[inline(always)]
+pub(super) fn word(bits: Bits) -> u32 {
+    bits.iter().fold(0, |word, bit| word | bit)
 }
 
 /// Eight flat shapes, one a lane. An empty lane is all zeros: a ray's distance to it is NaN, no hit.
@@ -36,7 +41,7 @@ pub(super) struct Flats {
 struct Meeting {
     distances: Lanes,
     /// Whether that is within the shape, in front of the ray and before the limit.
-    inside: [bool; LANES],
+    inside: Bits,
 }
 
 impl Flats {
@@ -73,7 +78,7 @@ impl Flats {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
         let mut meeting = Meeting {
             distances: [0.0; LANES],
-            inside: [false; LANES],
+            inside: [0; LANES],
         };
         for lane in 0..LANES {
             let offset: [f32; 3] = [
@@ -93,12 +98,13 @@ impl Flats {
             let s = dot(inside, &self.first_dual);
             let t = dot(inside, &self.second_dual);
             meeting.distances[lane] = distance;
-            meeting.inside[lane] = (distance > 0.0)
+            let inside = (distance > 0.0)
                 & (distance < limit)
                 & (s >= -self.slack[0][lane])
                 & (t >= -self.slack[1][lane])
                 & (s + self.slant[lane] * t <= 1.0 + self.slack[0][lane])
                 & (t + self.slant[lane] * s <= 1.0 + self.slack[1][lane]);
+            meeting.inside[lane] = bit(lane, inside);
         }
         meeting
     }
@@ -111,7 +117,7 @@ impl Flats {
             inside,
         } = self.meet(ray, limit);
         for lane in 0..LANES {
-            distances[lane] = if inside[lane] {
+            distances[lane] = if inside[lane] != 0 {
                 distances[lane]
             } else {
                 f32::INFINITY
@@ -126,7 +132,7 @@ impl Flats {
         let Meeting { distances, inside } = self.meet(ray, limit);
         let mut nearest = None;
         let mut limit = f32::INFINITY;
-        let mut left = mask(inside);
+        let mut left = word(inside);
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
@@ -141,6 +147,6 @@ impl Flats {
     /// Whether the ray meets any before `limit`.
     #[inline(always)]
     pub(super) fn occlude(&self, ray: &Ray, limit: f32) -> bool {
-        mask(self.meet(ray, limit).inside) != 0
+        word(self.meet(ray, limit).inside) != 0
     }
 }

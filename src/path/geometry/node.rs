@@ -1,6 +1,6 @@
 //! The inner nodes of a tree: eight boxes each.
 
-use super::flats::{LANES, Lanes, mask};
+use super::flats::{LANES, Lanes, bit, word};
 use crate::path::ray::{Ray, gamma};
 
 /// Up to eight boxes, and what is in each.
@@ -109,7 +109,7 @@ impl Probe {
         let near = self.near.map(|bound| &node.bounds[bound]);
         let far = self.far.map(|bound| &node.bounds[bound]);
         let mut distances = [0.0; LANES];
-        let mut inside = [false; LANES];
+        let mut inside = [0; LANES];
         for lane in 0..LANES {
             let (mut start, mut end) = (0.0, limit);
             for axis in 0..3 {
@@ -120,11 +120,11 @@ impl Probe {
                 end = if leaves < end { leaves } else { end };
             }
             distances[lane] = start;
-            inside[lane] = start <= end * WIDER;
+            inside[lane] = bit(lane, start <= end * WIDER);
         }
         Entry {
             distances,
-            boxes: mask(inside),
+            boxes: word(inside),
         }
     }
 }

@@ -251,7 +251,7 @@ const SLOW: usize = 100_000;
 const SHAPES: u32 = LANES as u32;
 
 /// What visiting a node costs, in tests of single shapes.
-const TRAVERSAL_COST: f32 = 3.0;
+const TRAVERSAL_COST: f32 = 8.0;
 
 /// A scaled box, widened by what rounding does to a ray's way to it.
 fn scaled(corners: [Vec3A; 2], scale: f32) -> Aabb {
@@ -266,5 +266,66 @@ impl core::fmt::Debug for Tree {
             .field("nodes", &self.nodes.len())
             .field("leaves", &self.leaves.len())
             .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hash::{hash, unit_f32};
+    use crate::path::shape::Flat;
+
+    /// Triangles in a cube of edge `size`, every fourth of them twice.
+    fn triangles(count: u64, size: f32) -> Vec<Flat> {
+        let corner = |triangle: u64, k: u64| {
+            core::array::from_fn(|axis| {
+                let word = |k| hash(triangle / 4 * 3 + triangle % 4 % 3, 8 * k + axis as u64);
+                size * (unit_f32(word(0)) + 0.2 * unit_f32(word(k)))
+            })
+        };
+        (0..count)
+            .map(|triangle| Flat::triangle([1, 2, 3].map(|k| corner(triangle, k))).unwrap())
+            .collect()
+    }
+
+    /// Rays through the cube; some run along the axes, with zeros of both signs.
+    fn ray(index: u64, size: f32) -> Ray {
+        let random = |k| unit_f32(hash(!index, k));
+        let axes = [Vec3A::X, Vec3A::NEG_X, -Vec3A::Y, Vec3A::Z, -Vec3A::Z];
+        let direction = match axes.get(usize::try_from(index % 8).unwrap()) {
+            Some(&axis) => axis,
+            None => Vec3A::new(random(0) - 0.5, random(1) - 0.5, random(2) - 0.5).normalize(),
+        };
+        Ray {
+            origin: Vec3A::new(random(3), random(4), random(5)) * (1.2 * size),
+            direction,
+        }
+    }
+
+    #[test]
+    fn a_tree_finds_what_a_look_at_every_shape_finds() {
+        let mut met = 0;
+        for (count, size) in [(1, 1.0), (9, 3.0), (400, 1.0), (400, 1e-15), (400, 1e15)] {
+            let shapes = triangles(count, size);
+            let tree = Tree::new(&shapes);
+            assert_eq!(tree.leaves().flatten().count(), shapes.len());
+            for index in 0..2000 {
+                let ray = ray(index, size);
+                let limit = size * [0.3, f32::INFINITY][usize::from(index % 3 == 0)];
+                let distances = shapes
+                    .iter()
+                    .filter_map(|shape| shape.intersect(&ray, limit));
+                let expected = distances.min_by(f32::total_cmp);
+                let found = tree.nearest(&shapes, &ray, limit);
+                assert_eq!(
+                    found.map(|found| found.distance),
+                    expected,
+                    "{count} {size} {ray:?}"
+                );
+                assert_eq!(tree.occluded(&shapes, &ray, limit), expected.is_some());
+                met += usize::from(expected.is_some());
+            }
+        }
+        assert!(met > 1000, "{met} rays meet something");
     }
 }

@@ -102,21 +102,38 @@ pub(crate) fn student(level: f64, freedom: f64) -> f64 {
         let z = normal(0.5 + 0.5 * level);
         return expanded(z, freedom);
     }
-    let outside = |t: f64| incomplete_beta(0.5 * freedom, 0.5, freedom / (freedom + t * t));
-    let (mut low, mut high) = (0.0, 1.0);
-    while outside(high) > 1.0 - level && high < 1e150 {
-        low = high;
-        high *= 2.0;
-    }
-    for _ in 0..64 {
-        let middle = 0.5 * (low + high);
-        if outside(middle) > 1.0 - level {
-            low = middle;
+    // Newton's steps towards the tail that is left outside, within a bracket that they narrow; where a step would leave it,
+    // its middle.
+    let half = 0.5 * freedom;
+    let tail = 1.0 - level;
+    let front =
+        ln_gamma(half + 0.5) - ln_gamma(half) - 0.5 * (core::f64::consts::PI * freedom).ln();
+    let (mut low, mut high) = (0.0, 1e150);
+    let mut t = expanded(normal(0.5 + 0.5 * level), freedom.max(2.0));
+    for _ in 0..200 {
+        let excess = incomplete_beta(half, 0.5, freedom / (freedom + t * t)) - tail;
+        if excess > 0.0 {
+            low = t;
         } else {
-            high = middle;
+            high = t;
+        }
+        let density = (front - (half + 0.5) * (t * t / freedom).ln_1p()).exp();
+        let step = excess / (2.0 * density);
+        let next = t + step;
+        if next == t || high - low <= 1e-15 * high {
+            break;
+        }
+        t = match () {
+            () if next > low && next < high => next,
+            // Far out quantiles differ by powers.
+            () if high > 2.0 * low + 2.0 => (low.max(0.5) * high).sqrt(),
+            () => 0.5 * (low + high),
+        };
+        if step.abs() < 1e-12 * t {
+            break;
         }
     }
-    high
+    t
 }
 
 /// Student's quantile from the normal one: formula 26.7.5 of Abramowitz and Stegun (1964), *Handbook of
@@ -246,6 +263,9 @@ mod tests {
             (0.999_999, 4.0, 49.458_636_755_203_976),
             (0.99, 999.5, 2.580_757_166_429_153_3),
             (0.95, 1000.0, 1.962_339_080_826_408_3),
+            (0.5, 0.3, 3.027_336_940_864_797_7),
+            (0.95, 0.5, 164.557_673_480_488_2),
+            (0.999, 2.5, 18.277_893_528_130_64),
             (0.95, 1001.0, 1.962_336_705_280_879_8),
             (0.95, 1e9, 1.959_963_986_912_325),
         ] {

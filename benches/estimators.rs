@@ -1,14 +1,19 @@
 //! What an estimator costs beside the loop that one would write by hand on the same points.
 //!
-//! Run with `RAYON_NUM_THREADS=1` for a fair comparison: the loops by hand have one thread. For instruction counts, which do
-//! not depend on what else the machine does, run one case alone:
+//! Run with `RAYON_NUM_THREADS=1` for a fair comparison: the loops by hand have one thread. The ratios need loop and library
+//! side by side, in turns, so that what else the machine does hits both:
+//!
+//! `ESTIMATORS_RATIO=101 RAYON_NUM_THREADS=1 cargo bench --all-features --bench estimators`
+//!
+//! prints them, and those of one thread and two. For instruction counts, which do not depend on what else the machine
+//! does, run one case alone:
 //!
 //! `ESTIMATORS_ONCE=monte_carlo/library RAYON_NUM_THREADS=1 valgrind --tool=callgrind target/release/deps/estimators-*`
 
 #![expect(clippy::cast_possible_truncation, reason = "small numbers")]
 
 use std::hint::black_box;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use criterion::{Criterion, Throughput};
 use estimand::estimators::{Bounded, Strata, Vegas};
@@ -56,6 +61,31 @@ fn by_hand_on(points: &impl PointSet, count: u64) -> [f64; 2] {
         function(x.try_into().expect("five coordinates"))
     })
 }
+
+/// By hand in the cells of a grid, `CELLS` along each of the first three axes: points in equal numbers.
+fn by_hand_in_cells(count: u64) -> [f64; 2] {
+    let cells = CELLS.pow(3);
+    let each = count / cells;
+    let (mut mean, mut variance) = (0.0, 0.0);
+    for cell in 0..cells {
+        let corner = [cell, cell / CELLS, cell / CELLS / CELLS].map(|place| (place % CELLS) as f64);
+        let mut stream = Stream(Xoshiro256PlusPlus::seed_from_u64(hash(1, cell)));
+        let [here, error] = by_hand(each, |_| {
+            let mut x: [f64; DIMENSIONS] = std::array::from_fn(|_| stream.next_1d());
+            for (x, place) in x.iter_mut().zip(corner) {
+                *x = (place + *x) / CELLS as f64;
+            }
+            function(x)
+        });
+        mean += here;
+        variance += error * error;
+    }
+    let cells = cells as f64;
+    [mean / cells, variance.sqrt() / cells]
+}
+
+/// Cells along an axis of the grid of `Strata`.
+const CELLS: u64 = 8;
 
 type Case = (&'static str, Box<dyn Fn()>);
 
@@ -125,6 +155,19 @@ fn cases() -> Vec<Case> {
             }),
         ),
         (
+            "strata/by_hand",
+            Box::new(|| {
+                black_box(by_hand_in_cells(COUNT));
+            }),
+        ),
+        (
+            "strata/library",
+            Box::new(move || {
+                let strata = Strata::new(CELLS, 3, COUNT, 1).expect("valid");
+                drop(black_box(strata.estimate(&f())));
+            }),
+        ),
+        (
             "bounded/library",
             Box::new(move || {
                 let bounded = Bounded::new(COUNT, 1, 0.0, 1.0).expect("bounds");
@@ -132,9 +175,9 @@ fn cases() -> Vec<Case> {
             }),
         ),
         (
-            "strata/library",
+            "neyman/library",
             Box::new(move || {
-                let strata = Strata::new(8, 3, COUNT, 1).expect("valid").neyman();
+                let strata = Strata::new(CELLS, 3, COUNT, 1).expect("valid").neyman();
                 drop(black_box(strata.estimate(&f())));
             }),
         ),
@@ -148,11 +191,120 @@ fn cases() -> Vec<Case> {
     ]
 }
 
+/// Seconds that each of two jobs takes when they run in turns.
+fn in_turns(rounds: usize, jobs: [&dyn Fn(); 2]) -> [Vec<f64>; 2] {
+    let mut seconds = [Vec::new(), Vec::new()];
+    for _ in 0..rounds {
+        for (job, seconds) in jobs.iter().zip(&mut seconds) {
+            let clock = Instant::now();
+            job();
+            seconds.push(clock.elapsed().as_secs_f64());
+        }
+    }
+    seconds
+}
+
+/// Prints the medians of two jobs in milliseconds and their ratio, and the quartiles of the ratios of neighbouring runs.
+fn compare(name: &str, rounds: usize, jobs: [&dyn Fn(); 2]) {
+    let seconds = in_turns(rounds, jobs);
+    let mut ratios: Vec<f64> = seconds[1]
+        .iter()
+        .zip(&seconds[0])
+        .map(|(b, a)| b / a)
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    let [a, b] = seconds.map(|mut seconds| {
+        seconds.sort_by(f64::total_cmp);
+        1e3 * seconds[rounds / 2]
+    });
+    let (low, high) = (ratios[rounds / 4], ratios[rounds - 1 - rounds / 4]);
+    println!(
+        "| {name} | {a:.2} | {b:.2} | {:.2} | {low:.2} to {high:.2} |",
+        b / a
+    );
+}
+
+/// Every loop by hand beside the library, and one thread beside two.
+fn ratios(rounds: usize) {
+    let cases = cases();
+    println!("| estimator | by hand: ms | library: ms | ratio | quartiles |");
+    for pair in cases.windows(2) {
+        let [(name, by_hand), (_, library)] = pair else {
+            continue;
+        };
+        if let Some(name) = name.strip_suffix("/by_hand") {
+            compare(name, rounds, [by_hand, library]);
+        }
+    }
+    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let (one, two) = (pool(1).expect("a thread"), pool(2).expect("two threads"));
+    println!("| estimator | two threads: ms | one: ms | ratio | quartiles |");
+    for (name, case) in &threaded() {
+        compare(name, rounds, [&|| two.install(case), &|| one.install(case)]);
+    }
+}
+
+/// Estimators that take long enough for the threads to be worth while.
+fn threaded() -> Vec<(&'static str, Box<dyn Fn() + Sync>)> {
+    const MANY: u64 = 1 << 21;
+    let f = || cube(function);
+    let sobol = || Sobol::new(DIMENSIONS as u32).expect("five dimensions");
+    let owen = move |seed| sobol().scrambled(HashedOwen { seed });
+    vec![
+        (
+            "MonteCarlo",
+            Box::new(move || drop(black_box(MonteCarlo::new(MANY, 1).estimate(&f())))),
+        ),
+        (
+            "Average",
+            Box::new(move || drop(black_box(Average::new(owen(1), MANY).estimate(&f())))),
+        ),
+        (
+            "Replicated",
+            Box::new(move || {
+                drop(black_box(
+                    Replicated::new(16, MANY / 16, owen).estimate(&f()),
+                ));
+            }),
+        ),
+        (
+            "Bounded",
+            Box::new(move || {
+                let bounded = Bounded::new(MANY, 1, 0.0, 1.0).expect("bounds");
+                drop(black_box(bounded.estimate(&f())));
+            }),
+        ),
+        (
+            "Strata, neyman",
+            Box::new(move || {
+                let strata = Strata::new(CELLS, 3, MANY, 1).expect("valid").neyman();
+                drop(black_box(strata.estimate(&f())));
+            }),
+        ),
+        (
+            "Vegas",
+            Box::new(move || {
+                let vegas = Vegas::new(DIMENSIONS as u32, MANY, 1).expect("valid");
+                drop(black_box(vegas.estimate(&f())));
+            }),
+        ),
+    ]
+}
+
 fn main() {
     if let Some(name) = std::env::var_os("ESTIMATORS_ONCE") {
         let cases = cases();
         let case = cases.iter().find(|(case, _)| name == *case);
         case.expect("the name of a case").1();
+        return;
+    }
+    if let Some(rounds) = std::env::var_os("ESTIMATORS_RATIO") {
+        let rounds = rounds.to_str().and_then(|rounds| rounds.parse().ok());
+        ratios(
+            rounds
+                .filter(|&rounds| rounds > 0)
+                .expect("a number of rounds"),
+        );
         return;
     }
     let mut criterion = Criterion::default().configure_from_args();

@@ -54,39 +54,51 @@ impl<V: Value> Block<V> {
     /// Adds values one after the other, made of `values` by `widen`.
     pub(crate) fn extend<N: Copy>(&mut self, values: &[N], widen: impl Fn(N) -> V) {
         let Some(&first) = values.first() else { return };
-        let mut block = *self;
-        if block.count == 0 {
-            block.first = widen(first);
-            block.lows = [block.first; LANES];
-            block.highs = block.lows;
+        if self.count == 0 {
+            self.first = widen(first);
+            self.lows = [self.first; LANES];
+            self.highs = self.lows;
         }
         // As many as make the lanes even, then all of them at once, then the rest.
         #[expect(clippy::cast_possible_truncation, reason = "below the number of lanes")]
-        let odd = (block.count.wrapping_neg() % LANES as u64) as usize;
+        let odd = (self.count.wrapping_neg() % LANES as u64) as usize;
         let (before, values) = values.split_at(odd.min(values.len()));
         let (groups, after) = values.as_chunks::<LANES>();
         for (value, lane) in before.iter().zip(LANES - odd..) {
-            block.add(lane, widen(*value));
+            self.add(lane, widen(*value));
         }
-        for group in groups {
-            for (lane, value) in group.iter().enumerate() {
-                block.add(lane, widen(*value));
-            }
-        }
+        self.add_groups(groups, &widen);
         for (lane, value) in after.iter().enumerate() {
-            block.add(lane, widen(*value));
+            self.add(lane, widen(*value));
         }
-        block.count += (before.len() + values.len()) as u64;
-        *self = block;
+        self.count += (before.len() + values.len()) as u64;
     }
 
     #[inline]
     fn add(&mut self, lane: usize, value: V) {
-        self.lows[lane] = self.lows[lane].zip(value, smaller);
-        self.highs[lane] = self.highs[lane].zip(value, larger);
+        self.lows[lane] = value.zip(self.lows[lane], smaller);
+        self.highs[lane] = value.zip(self.highs[lane], larger);
         let shifted = value.zip(self.first, |x, first| x - first);
         self.sums[lane] = self.sums[lane].zip(shifted, |sum, d| sum + d);
         self.squares[lane] = self.squares[lane].zip(shifted, |squares, d| squares + d * d);
+    }
+
+    /// Adds a value to every lane, group after group; all in vector registers, where a value of three components
+    /// just has room.
+    #[inline]
+    fn add_groups<N: Copy>(&mut self, groups: &[[N; LANES]], widen: impl Fn(N) -> V) {
+        let first = [self.first; LANES];
+        let (mut sums, mut squares) = (self.sums, self.squares);
+        let (mut lows, mut highs) = (self.lows, self.highs);
+        for group in groups {
+            let values = group.map(&widen);
+            lows = values.zip(lows, smaller);
+            highs = values.zip(highs, larger);
+            let shifted = values.zip(first, |x, first| x - first);
+            sums = sums.zip(shifted, |sum, d| sum + d);
+            squares = squares.zip(shifted, |squares, d| squares + d * d);
+        }
+        (self.sums, self.squares, self.lows, self.highs) = (sums, squares, lows, highs);
     }
 
     /// Whether all sums are finite; once they are not, they stay so.

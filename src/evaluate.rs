@@ -57,8 +57,8 @@ impl<P: PointSet> Source for P {
             let rows = usize::try_from(end - index).map_or(most, |left| left.min(most));
             let ahead = &mut room[..rows * width];
             self.fill(index, 0..dimensions, ahead);
-            let first = index;
-            let at = |index| {
+            let (first, ahead) = (index, &*ahead);
+            let at = move |index| {
                 #[expect(clippy::cast_possible_truncation, reason = "below the number of rows")]
                 let row = (index - first) as usize;
                 Cursor::with_prefix(self, index, &ahead[row * width..][..width])

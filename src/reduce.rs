@@ -9,24 +9,26 @@ const LARGEST_WAVE: u64 = 1024;
 /// Runs `job` for `0..count` and hands the results to `take` in the order of their indices.
 ///
 /// Stops at the first `Err` that `take` returns; jobs past it may have run, their results are dropped.
-pub(crate) fn in_order<T: Send, E>(
+pub(crate) fn in_order<T: Send, E: Send>(
     count: u64,
     job: impl Fn(u64) -> T + Sync,
-    mut take: impl FnMut(T) -> Result<(), E>,
+    mut take: impl FnMut(T) -> Result<(), E> + Send,
 ) -> Result<(), E> {
     if count == 1 {
         return take(job(0));
     }
-    let (mut first, mut length) = (0, FIRST_WAVE);
-    while first < count {
-        let last = count.min(first.saturating_add(length));
-        wave(first..last, &job)
-            .into_iter()
-            .try_for_each(&mut take)?;
-        first = last;
-        length = LARGEST_WAVE.min(2 * length);
-    }
-    Ok(())
+    inside(|| {
+        let (mut first, mut length) = (0, FIRST_WAVE);
+        while first < count {
+            let last = count.min(first.saturating_add(length));
+            wave(first..last, &job)
+                .into_iter()
+                .try_for_each(&mut take)?;
+            first = last;
+            length = LARGEST_WAVE.min(2 * length);
+        }
+        Ok(())
+    })
 }
 
 /// The values of `job` at `0..count`, in order: many estimates side by side, as the pixels of an image
@@ -50,9 +52,27 @@ pub fn each<T: Send>(count: u64, job: impl Fn(u64) -> T + Sync) -> Vec<T> {
     wave(0..count, &job)
 }
 
+/// Runs `work` on a thread of rayon's current pool, so that its waves need not change threads each; a pool of one thread
+/// has nothing to offer over the caller's.
+#[cfg(feature = "parallel")]
+fn inside<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    if rayon::current_num_threads() == 1 {
+        return work();
+    }
+    rayon::scope(|_| work())
+}
+
+#[cfg(not(feature = "parallel"))]
+fn inside<T>(work: impl FnOnce() -> T) -> T {
+    work()
+}
+
 #[cfg(feature = "parallel")]
 fn wave<T: Send>(jobs: core::ops::Range<u64>, job: &(impl Fn(u64) -> T + Sync)) -> Vec<T> {
     use rayon::iter::{IntoParallelIterator, ParallelIterator};
+    if rayon::current_num_threads() == 1 {
+        return jobs.map(job).collect();
+    }
     // rayon's range of u64 has no exact length, and collects in order all the same.
     jobs.into_par_iter().map(job).collect()
 }

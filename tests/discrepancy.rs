@@ -205,6 +205,57 @@ fn one_point_is_best_where_its_box_is_as_large_as_what_is_left() {
     assert_eq!(exact(&[1.0, 1.0], 2), 1.0);
 }
 
+/// The least star discrepancies of 2 to 6 points in the plane: Clément, Doerr, Klamroth and Paquete (2023), *Constructing
+/// optimal star discrepancy sets*, <https://arxiv.org/abs/2311.17463>. The points were found by a search of our own over all
+/// orders of the coordinates.
+#[test]
+fn the_best_sets_in_the_plane_have_their_published_values() {
+    let root = 3.0_f64.sqrt() / 2.0;
+    let (low, golden) = (root - 0.5, (5.0_f64.sqrt() - 1.0) / 2.0);
+    let first = 0.284_700_655_416_561_6;
+    let last = first + 2.0 / 3.0;
+    for (printed, rows) in [
+        (".3660", vec![low, low, root, root]),
+        (
+            ".2847",
+            vec![first, 0.6 * first, golden, golden, last, last],
+        ),
+        (".2500", vec![0.0, 0.0, 0.5, 0.75, 2.0 / 3.0, 0.5, 1.0, 0.5]),
+        (
+            ".2000",
+            vec![0.1, 0.8, 0.25, 0.1, 0.5, 0.4, 0.75, 0.6, 1.0, 0.3],
+        ),
+        (
+            ".1667",
+            vec![
+                0.0,
+                0.0,
+                1.0 / 3.0,
+                0.5,
+                0.5,
+                0.75,
+                2.0 / 3.0,
+                1.0 / 3.0,
+                5.0 / 6.0,
+                0.9375,
+                8.0 / 9.0,
+                2.0 / 3.0,
+            ],
+        ),
+    ] {
+        let best = exact(&rows, 2);
+        assert_prints(best, &format!("0{printed}"));
+        // None of their neighbours is better.
+        for place in 0..rows.len() {
+            for step in [-1e-3, 1e-3] {
+                let mut moved = rows.clone();
+                moved[place] = (moved[place] + step).clamp(0.0, 1.0);
+                assert!(exact(&moved, 2) >= best - 1e-15, "{moved:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn the_star_discrepancy_is_the_largest_local_one() {
     let rows = halton(37, 1);

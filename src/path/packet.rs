@@ -223,5 +223,7 @@ mod tests {
     fn other_scenes_have_no_packets() {
         assert!(scenes::environment().scene.packet().is_none());
         assert!(scenes::cornell_box_specular().scene.packet().is_none());
+        let dark = room::<AreaLights, _>(false, NoEnvironment).unwrap();
+        assert!(dark.scene.packet().is_none());
     }
 }

@@ -53,7 +53,7 @@ struct Part<V> {
 impl<V: Value> Adaptation<V> {
     /// Iterations of about `count` points, beginning with `map`.
     pub(super) fn new(map: ImportanceMap, count: u64) -> Self {
-        let strata = Grid::new(map.dimensions(), count);
+        let strata = Grid::new(map.dimensions(), count, map.bins());
         Self {
             map,
             counts: strata.evenly(count),

@@ -12,8 +12,9 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// As many cells as leave eight points to each: the same along all axes, or one more along the first ones.
-    pub(super) fn new(dimensions: usize, count: u64) -> Self {
+    /// As many cells as leave eight points to each: the same along all axes, or one more along the first ones. Where they are
+    /// more than the `bins` of an axis, no cell lies in two bins: the jump of the map between them would decide the error.
+    pub(super) fn new(dimensions: usize, count: u64, bins: usize) -> Self {
         let most = (count / 8).clamp(1, 1 << 16);
         let mut cells = vec![1; dimensions];
         let mut strata = 1;
@@ -25,6 +26,13 @@ impl Grid {
             cells[axis] += 1;
             strata = more;
         }
+        let bins = bins as u64;
+        for cells in &mut cells {
+            if *cells > bins {
+                *cells -= *cells % bins;
+            }
+        }
+        let strata: u64 = cells.iter().product();
         Self {
             cells,
             strata: usize::try_from(strata).expect("at most 2^16"),
@@ -77,15 +85,19 @@ mod tests {
 
     #[test]
     fn strata_have_eight_points_and_are_walked_in_order() {
-        for (dimensions, count, cells) in [
-            (1, 80, vec![10]),
-            (3, 8 * 30, vec![3, 3, 3]),
-            (3, 8 * 36, vec![4, 3, 3]),
-            (10, 8 * 7, vec![2, 2, 1, 1, 1, 1, 1, 1, 1, 1]),
-            (2, 7, vec![1, 1]),
-            (0, 100, vec![]),
+        for (dimensions, count, bins, cells) in [
+            (1, 80, 50, vec![10]),
+            (1, 8 * 128, 17, vec![119]),
+            (2, 8 * 110, 10, vec![10, 10]),
+            (2, 8 * 110, 5, vec![10, 10]),
+            (2, 8 * 110, 11, vec![11, 10]),
+            (3, 8 * 30, 50, vec![3, 3, 3]),
+            (3, 8 * 36, 50, vec![4, 3, 3]),
+            (10, 8 * 7, 1, vec![2, 2, 1, 1, 1, 1, 1, 1, 1, 1]),
+            (2, 7, 3, vec![1, 1]),
+            (0, 100, 3, vec![]),
         ] {
-            let grid = Grid::new(dimensions, count);
+            let grid = Grid::new(dimensions, count, bins);
             assert_eq!(grid.cells, cells);
             assert_eq!(grid.strata as u64, cells.iter().product::<u64>());
             let mut walked = grid.place(0, 5);

@@ -96,8 +96,9 @@ impl Light for AreaLights {
         Ok(Self { emitters, choices })
     }
 
+    /// Not without emitters: coordinates are drawn all the same then, which packets do not.
     fn as_area_lights(&self) -> Option<&Self> {
-        Some(self)
+        (!self.emitters.is_empty()).then_some(self)
     }
 
     #[inline]

@@ -74,7 +74,7 @@ fn cameras() -> [Pinhole; 3] {
 fn needles_are_walls_like_others() {
     for sensor in cameras() {
         for walls in needle_walls(0.5) {
-            let seen = lit(vec![walls.emitting([0.5; 3]).unwrap()], sensor.clone(), 256);
+            let seen = lit(vec![walls.emitting([0.5; 3]).unwrap()], sensor, 256);
             assert!(seen.off(1.0).abs() < LIMIT, "{seen:?}");
         }
     }
@@ -84,7 +84,7 @@ fn needles_are_walls_like_others() {
 fn nothing_leaks_between_needles() {
     for sensor in cameras() {
         for walls in needle_walls(0.9) {
-            assert_eq!(leak(vec![walls], sensor.clone()), 0.0);
+            assert_eq!(leak(vec![walls], sensor), 0.0);
         }
     }
 }

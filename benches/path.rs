@@ -4,12 +4,19 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+#[cfg(feature = "mitsuba")]
+use estimand::mitsuba::{self, Instance};
 use estimand::path::bsdf::Bsdf;
 use estimand::path::light::{Environment, Light};
 use estimand::path::sensor::Pinhole;
 use estimand::path::{View, scenes};
 use estimand::points::{Halton, HashedOwen, NRooks, Owen, Sobol, Stratified};
 use estimand::{Average, Estimator, MonteCarlo};
+#[cfg(feature = "mitsuba")]
+use estimand::{
+    each,
+    points::{Rescrambled, pixel},
+};
 
 const SIZE: u32 = 32;
 const SPP: u64 = 16;
@@ -70,9 +77,58 @@ fn sets_in_the_cornell_box(criterion: &mut Criterion) {
     });
 }
 
+/// The type that can render every scene beside the smallest that is enough for this one.
+#[cfg(feature = "mitsuba")]
+fn specialised(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("path/specialised");
+    group
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1))
+        .throughput(Throughput::Elements(u64::from(SIZE * SIZE) * SPP));
+    for scene in ["cornell_box", "environment", "sky", "meshes"] {
+        let file = format!(
+            "{}/reference/scenes/{scene}.xml",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        let description = mitsuba::read(&file, &[]).expect("a scene of the references");
+        for (name, instance) in [
+            ("general", Instance::General),
+            ("smallest", Instance::Smallest),
+        ] {
+            let picture = description
+                .load(instance)
+                .expect("it can be loaded")
+                .picture;
+            let mut seed = 0;
+            group.bench_function(BenchmarkId::new(scene, name), |bencher| {
+                bencher.iter(|| {
+                    seed += 1;
+                    black_box(each(u64::from(SIZE * SIZE), |pixel| {
+                        let position = [pixel % u64::from(SIZE), pixel / u64::from(SIZE)];
+                        let position = position.map(|x| u32::try_from(x).expect("below the size"));
+                        let points = Rescrambled::new(4, pixel::seed(position, seed));
+                        let points = points.expect("few dimensions");
+                        picture
+                            .average(position, [SIZE; 2], &points, SPP)
+                            .expect("finite")
+                            .mean
+                    }))
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+/// Scene files are read with the feature `mitsuba` only.
+#[cfg(not(feature = "mitsuba"))]
+fn specialised(_: &mut Criterion) {}
+
 criterion_group!(
     path,
     scenes_with_independent_points,
-    sets_in_the_cornell_box
+    sets_in_the_cornell_box,
+    specialised
 );
 criterion_main!(path);

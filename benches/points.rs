@@ -9,9 +9,9 @@ use std::time::Duration;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use estimand::points::{
-    DigitPermutation, DigitalShift, Faure, Halton, HashedOwen, Independent, Kronecker, Lattice,
-    LatticeSequence, LinearMatrix, MultiJittered, NRooks, OrthogonalArray, Owen, PointSet,
-    Rescrambled, Sobol, Stratified,
+    BlueNoise, DigitPermutation, DigitalShift, Faure, Halton, Hammersley, HashedOwen, Independent,
+    Kronecker, Lattice, LatticeSequence, LinearMatrix, MultiJittered, NRooks, OrthogonalArray,
+    Owen, PointSet, Rescrambled, Sobol, Stratified,
 };
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 
@@ -40,6 +40,10 @@ fn sets(dimensions: u32) -> Vec<(&'static str, Box<dyn PointSet>)> {
     vec![
         ("Independent", Box::new(Independent::new(SEED))),
         ("NRooks", Box::new(NRooks::new(COUNT, SEED).unwrap())),
+        (
+            "NRooks, 50000 points",
+            Box::new(NRooks::new(50_000, SEED).unwrap()),
+        ),
         (
             "Stratified",
             Box::new(Stratified::new(COUNT, 2, SEED).unwrap()),
@@ -79,6 +83,14 @@ fn sets(dimensions: u32) -> Vec<(&'static str, Box<dyn PointSet>)> {
             "Halton, Owen",
             Box::new(halton.scrambled(Owen { seed: SEED })),
         ),
+        (
+            "Hammersley, DigitPermutation",
+            Box::new(
+                Hammersley::new(COUNT, dimensions)
+                    .unwrap()
+                    .scrambled(DigitPermutation { seed: SEED }),
+            ),
+        ),
         ("Faure", Box::new(Faure::new(dimensions).unwrap())),
         (
             "Lattice",
@@ -89,6 +101,10 @@ fn sets(dimensions: u32) -> Vec<(&'static str, Box<dyn PointSet>)> {
             Box::new(LatticeSequence::new(dimensions).unwrap()),
         ),
         ("Kronecker", Box::new(Kronecker::r(dimensions).unwrap())),
+        (
+            "BlueNoise",
+            Box::new(BlueNoise::new(COUNT, SEED).unwrap().pixel([3, 4])),
+        ),
     ]
 }
 

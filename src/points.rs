@@ -49,6 +49,7 @@ mod block;
 mod blue_noise;
 mod digits;
 mod faure;
+mod finite;
 mod folded;
 mod halton;
 mod hammersley;
@@ -59,12 +60,14 @@ mod multi_jittered;
 mod n_rooks;
 mod orthogonal_array;
 mod padded;
+mod permutation;
 pub mod pixel;
 mod radical_inverse;
 mod rescrambled;
 mod scramble;
 mod shifted;
 mod sobol;
+mod strata;
 mod stratified;
 mod van_der_corput;
 
@@ -148,11 +151,7 @@ pub trait PointSet: Sync {
     /// If the length of `out` is no multiple of the number of dimensions, or if an index would pass
     /// [`u64::MAX`].
     fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
-        for (index, row) in rows(first, &dimensions, out) {
-            for (dimension, coordinate) in dimensions.clone().zip(row) {
-                *coordinate = self.coordinate(index, dimension);
-            }
-        }
+        fill_singly(self, first, dimensions, out);
     }
 
     /// The point `index`, to be read coordinate by coordinate.
@@ -189,6 +188,20 @@ macro_rules! pointer {
 }
 
 pointer!(&P, Box<P>);
+
+/// [`PointSet::fill`] without any preparation for a block.
+fn fill_singly<P: PointSet + ?Sized>(
+    points: &P,
+    first: u64,
+    dimensions: Range<u32>,
+    out: &mut [f64],
+) {
+    for (index, row) in rows(first, &dimensions, out) {
+        for (dimension, coordinate) in dimensions.clone().zip(row) {
+            *coordinate = points.coordinate(index, dimension);
+        }
+    }
+}
 
 /// The rows of `out` that [`PointSet::fill`] writes, each with the index of its point.
 ///

@@ -211,7 +211,11 @@ laws! {
     sobol: Sobol::new(100).unwrap();
     sobol_of_all_dimensions: Sobol::new(1024).unwrap();
     faure: Faure::new(7).unwrap();
+    faure_with_a_large_base: Faure::new(40).unwrap();
     lattice: Lattice::published(1000, 40).unwrap();
+    lattice_of_a_prime_count: Lattice::component_by_component(251, 40).unwrap();
+    lattice_of_2_53: Lattice::published(1 << 53, 40).unwrap();
+    lattice_past_2_53: Lattice::published(u64::MAX, 40).unwrap();
     lattice_sequence: LatticeSequence::new(40).unwrap();
     kronecker: Kronecker::r(40).unwrap();
     folded: Folded::new(Sobol::new(9).unwrap());
@@ -220,13 +224,20 @@ laws! {
 laws_of_random_sets! {
     independent: |seed| Independent::new(seed);
     n_rooks: |seed| NRooks::new(100, seed).unwrap();
+    n_rooks_10_5: |seed| NRooks::new(100_000, seed).unwrap();
+    n_rooks_2_32: |seed| NRooks::new(1 << 32, seed).unwrap();
     n_rooks_2_64: |seed| NRooks::new(u64::MAX, seed).unwrap();
     orthogonal_array: |seed| OrthogonalArray::new(100, 8, seed).unwrap();
+    orthogonal_array_of_all_dimensions: |seed| OrthogonalArray::new(10_000, 102, seed).unwrap();
     halton_digital_shift: |seed| Halton::new(40).unwrap().scrambled(DigitalShift { seed });
     halton_permuted: |seed| Halton::new(40).unwrap().scrambled(DigitPermutation { seed });
     halton_owen: |seed| Halton::new(40).unwrap().scrambled(Owen { seed });
+    hammersley_digital_shift: |seed| Shifted::new(
+        Hammersley::new(100, 3).unwrap().scrambled(DigitalShift { seed }), seed);
     hammersley_permuted: |seed| Shifted::new(
-        Hammersley::new(100, 3).unwrap().scrambled(DigitPermutation { seed }), seed);
+        Hammersley::new(100, 40).unwrap().axis(9).unwrap().scrambled(DigitPermutation { seed }), seed);
+    hammersley_owen: |seed| Shifted::new(
+        Hammersley::new(100, 3).unwrap().scrambled(Owen { seed }), seed);
     sobol_digital_shift: |seed| Sobol::new(40).unwrap().scrambled(DigitalShift { seed });
     sobol_linear_matrix: |seed| Sobol::new(10).unwrap().scrambled(LinearMatrix { seed });
     sobol_owen: |seed| Sobol::new(40).unwrap().scrambled(Owen { seed });
@@ -242,9 +253,14 @@ laws_of_random_sets! {
     padded: |seed| Padded::new(
         Sobol::new(4).unwrap().scrambled(HashedOwen { seed }), 4, NRooks::new(64, !seed).unwrap()).unwrap();
     blue_noise: |seed| BlueNoise::new(16, seed).unwrap().pixel([3, 4]);
+    blue_noise_at_odd_powers: |seed| BlueNoise::new(8, seed).unwrap().pixel([70_000, 4]);
 }
 
 laws_of_random_grids! {
     stratified: |seed| Stratified::new(30, 2, seed).unwrap();
+    stratified_in_many_dimensions: |seed| Stratified::new(100_000, 5, seed).unwrap();
+    stratified_past_2_32: |seed| Stratified::new(u64::MAX, 3, seed).unwrap();
     multi_jittered: |seed| MultiJittered::new(90, seed).unwrap();
+    multi_jittered_of_many_points: |seed| MultiJittered::grid(1 << 12, 1 << 20, seed).unwrap();
+    multi_jittered_in_one_row: |seed| MultiJittered::grid(1000, 1, seed).unwrap();
 }

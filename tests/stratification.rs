@@ -188,17 +188,28 @@ fn hammersley_has_one_point_in_every_stratum_of_its_axis() {
             evenly(&points, &indices, &[1], &[count]);
         }
     }
-    // With a power of two of points it is a net in two dimensions.
-    let points = Hammersley::new(64, 2).unwrap();
-    let indices: Vec<u64> = (0..64).collect();
-    for k in 0..=6 {
-        evenly(&points, &indices, &[0, 1], &[1 << k, 1 << (6 - k)]);
+}
+
+#[test]
+fn hammersley_is_a_net_in_two_dimensions_under_every_scramble() {
+    fn check(points: &dyn PointSet) {
+        let indices: Vec<u64> = (0..64).collect();
+        for k in 0..=6 {
+            evenly(points, &indices, &[0, 1], &[1 << k, 1 << (6 - k)]);
+        }
+    }
+    let plain = Hammersley::new(64, 2).unwrap();
+    check(&plain);
+    for seed in 0..5 {
+        check(&plain.clone().scrambled(DigitalShift { seed }));
+        check(&plain.clone().scrambled(DigitPermutation { seed }));
+        check(&plain.clone().scrambled(Owen { seed }));
     }
 }
 
 #[test]
 fn n_rooks_have_one_point_in_every_stratum_of_every_axis() {
-    for count in [1, 2, 9, 16, 17, 36, 100, 128] {
+    for count in [1, 2, 9, 16, 17, 36, 100, 128, 1000] {
         let points = NRooks::new(count, 3).unwrap();
         for set in [0, 1, 9] {
             let indices: Vec<u64> = (set * count..(set + 1) * count).collect();

@@ -1,8 +1,11 @@
 //! All shapes of a scene, and which of them a ray meets.
 
 mod copies;
+mod flats;
 mod kind;
+mod node;
 mod soup;
+mod stack;
 mod sweep;
 mod tree;
 

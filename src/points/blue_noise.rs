@@ -1,6 +1,9 @@
 //! Points for all pixels of an image at once, whose errors are spread as blue noise.
 
+use core::ops::Range;
+
 use super::PointSet;
+use super::block::Block;
 use super::scramble::{Columns, DigitOrder, scramble_reversed};
 use super::sobol::{multiplied, table};
 use crate::Error;
@@ -89,47 +92,122 @@ pub struct BlueNoisePixel {
     first: u64,
 }
 
-impl PointSet for BlueNoisePixel {
+impl BlueNoisePixel {
+    /// The points in the dimensions `2 pair` and `2 pair + 1`, of the image number `image`.
     #[inline]
-    fn coordinate(&self, index: u64, dimension: u32) -> f64 {
+    fn pair(&self, image: u64, pair: u32) -> Pair {
         let BlueNoise {
             matrices,
             samples,
             seed,
         } = self.image;
-        let (image, sample) = (index >> samples, index & ((1 << samples) - 1));
-        let (pair, axis) = (dimension / 2, dimension % 2);
         let key = hash(hash(seed, image), u64::from(pair));
-        let place = shuffled(self.first | sample, 32 + samples, key);
-        unit(scramble_reversed(
-            multiplied(&matrices[axis as usize], place),
-            hash(!key, u64::from(axis)),
-        ))
+        Pair {
+            matrices,
+            samples,
+            key,
+            pixel: Curve::START.followed_by(self.first >> samples, 32, key),
+        }
+    }
+}
+
+impl PointSet for BlueNoisePixel {
+    #[inline]
+    fn coordinate(&self, index: u64, dimension: u32) -> f64 {
+        let pair = self.pair(index >> self.image.samples, dimension / 2);
+        pair.coordinate(pair.place(index), dimension % 2)
     }
 
     fn size(&self) -> Option<u64> {
         Some(1 << self.image.samples)
     }
+
+    fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+        let block = Block::new(first, dimensions, out, u32::MAX, 0);
+        let Range { start, end } = block.dimensions;
+        let size = 1 << self.image.samples;
+        let (mut index, mut out) = (first, block.out);
+        while !out.is_empty() {
+            // The rows of one image after the other.
+            let left = size - (index & (size - 1));
+            let room = usize::try_from(left).unwrap_or(usize::MAX);
+            let (now, later) = out.split_at_mut(out.len().min(room.saturating_mul(block.width)));
+            for pair in start / 2..end.div_ceil(2) {
+                let axes = start.max(2 * pair)..end.min((2 * pair).saturating_add(2));
+                let pair = self.pair(index >> self.image.samples, pair);
+                for (row, sample) in now.chunks_exact_mut(block.width).zip(index..) {
+                    let place = pair.place(sample);
+                    for dimension in axes.clone() {
+                        row[(dimension - start) as usize] = pair.coordinate(place, dimension % 2);
+                    }
+                }
+            }
+            index = index.wrapping_add(left);
+            out = later;
+        }
+    }
 }
 
-/// `place`, of `bits` bits, with its digits in base 4 permuted, each by a permutation that those above it choose: the four
-/// squares that make a larger one, and the samples of a pixel, come in an order of their own everywhere.
-///
-/// Where the number of bits is odd, the last digit is in base 2.
-#[inline]
-fn shuffled(place: u64, bits: u32, key: u64) -> u64 {
-    let mut shuffled = 0;
-    let mut left = bits;
-    while left > 0 {
-        let width = left.min(2);
-        left -= width;
-        let digit = place >> left & ((1 << width) - 1);
-        // A one tells how many digits there are above.
-        let above = (place >> left >> width) | 1 << (bits - left - width);
-        let image = permute(digit, 1 << width, hash(key, above));
-        shuffled = shuffled << width | image;
+/// A net in two dimensions, and the place of a pixel in it.
+struct Pair {
+    matrices: &'static [Columns],
+    samples: u32,
+    key: u64,
+    pixel: Curve,
+}
+
+impl Pair {
+    /// The place in the net of a sample of the pixel: only the lowest bits of the index count.
+    #[inline]
+    fn place(&self, index: u64) -> u64 {
+        self.pixel
+            .followed_by(index, self.samples, self.key)
+            .shuffled
     }
-    shuffled
+
+    #[inline]
+    fn coordinate(&self, place: u64, axis: u32) -> f64 {
+        unit(scramble_reversed(
+            multiplied(&self.matrices[axis as usize], place),
+            hash(!self.key, u64::from(axis)),
+        ))
+    }
+}
+
+/// A place on the Morton curve whose digits in base 4 are permuted, each by a permutation that those above it choose: the four
+/// squares that make a larger one, and the samples of a pixel, come in an order of their own everywhere.
+#[derive(Clone, Copy)]
+struct Curve {
+    /// The digits as they were, after a one that tells how many they are.
+    digits: u64,
+    shuffled: u64,
+}
+
+impl Curve {
+    /// Before the first digit.
+    const START: Self = Self {
+        digits: 1,
+        shuffled: 0,
+    };
+
+    /// With the lowest `bits` bits of `word` as its next digits. Where their number is odd, the last digit is in base 2.
+    #[inline]
+    fn followed_by(self, word: u64, bits: u32, key: u64) -> Self {
+        let Self {
+            mut digits,
+            mut shuffled,
+        } = self;
+        let mut left = bits;
+        while left > 0 {
+            let width = left.min(2);
+            left -= width;
+            let digit = word >> left & ((1 << width) - 1);
+            let image = permute(digit, 1 << width, hash(key, digits));
+            shuffled = shuffled << width | image;
+            digits = digits << width | digit;
+        }
+        Self { digits, shuffled }
+    }
 }
 
 #[cfg(test)]

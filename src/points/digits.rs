@@ -57,7 +57,25 @@ impl Base {
     /// The scrambled radical inverse of `index`.
     #[inline]
     pub(super) fn inverse<S: DigitScramble>(&self, scramble: &S, key: u64, index: u64) -> f64 {
+        if self.base == 2 && !S::NESTED {
+            return self.binary(scramble.shift(key), index);
+        }
         self.fraction(scramble, key, Places::new(self, index))
+    }
+
+    /// The same in base 2, where digits are not nested: all at once. There is only one permutation that keeps 0, and
+    /// the shift is added without carries.
+    #[inline]
+    fn binary(&self, shift: u64, index: u64) -> f64 {
+        let digits = index.reverse_bits() ^ shift;
+        let leading = digits >> (u64::BITS - self.leading);
+        // The digits of the index after the first, and all of the shift after those.
+        let count = u64::BITS - (index >> self.leading).leading_zeros();
+        let (digits, shift) = (digits << self.leading, shift << self.leading);
+        let mirrored = digits.checked_shr(u64::BITS - count).unwrap_or(0);
+        let tail = fraction_of_word(shift << count);
+        let scale = f64::from_bits((1023 - u64::from(count)) << 52);
+        self.join(leading as f64, (mirrored as f64 + tail) * scale)
     }
 
     /// The scrambled radical inverses of `count` consecutive indices, from `first` on, where digits are not nested. They are
@@ -135,6 +153,43 @@ impl Base {
         self.join(leading as f64, self.rest(&mut scrambled, &mut digits))
     }
 
+    /// What the possible digits in the first place make, where digits are not nested, to be joined with
+    /// [`later`](Self::later) ones.
+    pub(super) fn firsts<S: DigitScramble>(
+        &self,
+        scramble: &S,
+        key: u64,
+    ) -> impl Iterator<Item = f64> {
+        let scrambled = Scrambled::new(self, scramble, key);
+        let weight = u64::from(self.power / self.base);
+        (0..u64::from(self.base)).map(move |digit| (scrambled.image(digit) * weight) as f64)
+    }
+
+    /// What the digits after the first place make, where digits are not nested.
+    pub(super) fn later<S: DigitScramble>(
+        &self,
+        scramble: &S,
+        key: u64,
+        mut digits: impl Iterator<Item = u64>,
+    ) -> Later {
+        let mut scrambled = Scrambled::new(self, scramble, key);
+        scrambled.skip(1);
+        for _ in 1..self.leading {
+            scrambled.push(digits.next().unwrap_or(0));
+        }
+        let leading = core::mem::take(&mut scrambled.mirrored);
+        Later {
+            leading: leading as f64,
+            rest: self.rest(&mut scrambled, &mut digits),
+        }
+    }
+
+    /// The [`fraction`](Self::fraction) of a first digit and the later ones.
+    #[inline(always)]
+    pub(super) fn joined(&self, first: f64, later: Later) -> f64 {
+        self.join(first + later.leading, later.rest)
+    }
+
     /// The fraction that the digits after the first make.
     #[inline(always)]
     fn rest<S: DigitScramble>(
@@ -173,6 +228,13 @@ impl Base {
     pub(super) fn power(&self) -> usize {
         self.power as usize
     }
+}
+
+/// What all digits but the first make: an integer, and a fraction.
+#[derive(Clone, Copy)]
+pub(super) struct Later {
+    leading: f64,
+    rest: f64,
 }
 
 #[inline(always)]
@@ -405,6 +467,41 @@ impl<'a, S: DigitScramble> Scrambled<'a, S> {
     /// The digits that follow those so far if all the rest of the index are 0, as a fraction in `[0, 1]`.
     #[inline]
     fn tail(&self) -> f64 {
-        self.shift as f64 * (1.0 / 18_446_744_073_709_551_616.0)
+        fraction_of_word(self.shift)
+    }
+}
+
+/// A fraction of 2^64, in `[0, 1]`.
+#[inline(always)]
+fn fraction_of_word(word: u64) -> f64 {
+    word as f64 * (1.0 / 18_446_744_073_709_551_616.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hash::hash;
+    use crate::points::{DigitPermutation, DigitalShift, Plain};
+
+    #[test]
+    fn binary_digits_are_mirrored_at_once_as_one_by_one() {
+        fn check(scramble: &impl DigitScramble) {
+            let base = Base::new(2);
+            for bits in 0..64 {
+                for key in 0..200 {
+                    let index = hash(key, bits) >> bits;
+                    for index in [index, 1 << bits, u64::MAX >> bits] {
+                        assert_eq!(
+                            base.inverse(scramble, key, index),
+                            base.fraction(scramble, key, Places::new(&base, index)),
+                            "{index}"
+                        );
+                    }
+                }
+            }
+        }
+        check(&Plain);
+        check(&DigitalShift { seed: 1 });
+        check(&DigitPermutation { seed: 1 });
     }
 }

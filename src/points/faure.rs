@@ -1,9 +1,12 @@
 //! Faure's points.
 
+use core::ops::Range;
+
+use super::block::Block;
 use super::digits::Base;
 use super::halton::primes_up_to;
 use super::scramble::{DigitScramble, Plain};
-use super::{Independent, PointSet};
+use super::{Independent, PointSet, fill_singly};
 use crate::Error;
 
 /// Faure's points: a digital sequence in the smallest prime base that is no less than the number of
@@ -16,7 +19,8 @@ use crate::Error;
 ///
 /// Dimensions past those asked for are independent hashed coordinates, selected by the seed of the scramble. Coordinates
 /// are within 2^-51 of the exact fraction, relatively, for every index. A coordinate takes of the order of the squared
-/// number of digits of the index; no tables.
+/// number of digits of the index; no tables are kept. In a block of points, where digits are not nested, this is done
+/// once for as many points as the base has digits.
 ///
 /// ```
 /// use estimand::points::{Faure, PointSet};
@@ -86,36 +90,128 @@ impl<S: DigitScramble> PointSet for Faure<S> {
         if dimension >= self.dimensions {
             return Independent::past(self.scramble.seed()).coordinate(index, dimension);
         }
-        let base = u64::from(self.base());
-        let mut digits = [0; 64];
-        let mut count = 0;
-        let mut rest = index;
-        while rest != 0 {
-            digits[count] = rest % base;
-            count += 1;
-            rest /= base;
-        }
-        let digits = &mut digits[..count];
-        translate(digits, dimension.into(), base);
+        let mut digits = Digits::of(index, self.base());
+        digits.translate(dimension);
         let key = self.scramble.key(dimension);
-        self.base
-            .fraction(&self.scramble, key, digits.iter().copied())
+        let digits = digits.places.into_iter().take(digits.count);
+        self.base.fraction(&self.scramble, key, digits)
     }
 
     fn dimensions(&self) -> u32 {
         self.dimensions
     }
+
+    fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+        let count = out.len().checked_div(dimensions.len()).unwrap_or(0);
+        if S::NESTED || count < self.base() as usize {
+            return fill_singly(self, first, dimensions, out);
+        }
+        let (last, seed) = (self.dimensions, self.scramble.seed());
+        let block = Block::new(first, dimensions, out, last, seed);
+        let columns: Vec<Column> = block
+            .dimensions
+            .map(|dimension| {
+                let key = self.scramble.key(dimension);
+                let firsts = self.base.firsts(&self.scramble, key).collect();
+                Column {
+                    dimension,
+                    key,
+                    firsts,
+                }
+            })
+            .collect();
+        // All points whose indices differ in the first digit only, after one another.
+        let base = u64::from(self.base());
+        let (mut index, mut out) = (first, block.out);
+        while !out.is_empty() {
+            let (run, digit) = (index / base, index % base);
+            let left = to_place(base - digit);
+            let (now, later) = out.split_at_mut(out.len().min(left * block.width));
+            let digits = Digits::of(run * base, self.base());
+            for (place, column) in columns.iter().enumerate() {
+                self.write(
+                    column,
+                    digits,
+                    digit,
+                    now[place..].iter_mut().step_by(block.width),
+                );
+            }
+            index = index.wrapping_add(base - digit);
+            out = later;
+        }
+    }
 }
 
-/// The coefficients of the polynomial `x -> p(x + by)` modulo `base`, from those of `p`: this is what Pascal's matrix to
-/// the power `by` does to the digits. By repeated synthetic division.
-fn translate(coefficients: &mut [u64], by: u64, base: u64) {
-    if by == 0 {
-        return;
+/// What all points have in common in one dimension.
+struct Column {
+    dimension: u32,
+    key: u64,
+    /// What the possible first digits make.
+    firsts: Box<[f64]>,
+}
+
+impl<S: DigitScramble> Faure<S> {
+    /// Writes the coordinates of points with the same `digits` but for the first, which counts from `first` on.
+    ///
+    /// The first digit of the index reaches the first of the coordinate only, where it is added.
+    fn write<'a>(
+        &self,
+        column: &Column,
+        mut digits: Digits,
+        first: u64,
+        out: impl Iterator<Item = &'a mut f64>,
+    ) {
+        digits.translate(column.dimension);
+        let places = digits.places.into_iter().take(digits.count).skip(1);
+        let later = self.base.later(&self.scramble, column.key, places);
+        let start = (digits.places[0] + first) % u64::from(self.base());
+        let firsts = column.firsts.iter().cycle().skip(to_place(start));
+        for (u, &first) in out.zip(firsts) {
+            *u = self.base.joined(first, later);
+        }
     }
-    for lowest in 0..coefficients.len().saturating_sub(1) {
-        for place in (lowest..coefficients.len() - 1).rev() {
-            coefficients[place] = (coefficients[place] + by * coefficients[place + 1]) % base;
+}
+
+fn to_place(digit: u64) -> usize {
+    usize::try_from(digit).expect("a digit is at most the base, a u32")
+}
+
+/// The digits of an index, lowest first.
+#[derive(Clone, Copy)]
+struct Digits {
+    base: u64,
+    places: [u64; 64],
+    count: usize,
+}
+
+impl Digits {
+    fn of(index: u64, base: u32) -> Self {
+        let mut digits = Self {
+            base: base.into(),
+            places: [0; 64],
+            count: 0,
+        };
+        let mut rest = index;
+        while rest != 0 {
+            digits.places[digits.count] = rest % digits.base;
+            digits.count += 1;
+            rest /= digits.base;
+        }
+        digits
+    }
+
+    /// As the coefficients of a polynomial `p`, those of `x -> p(x + by)` modulo the base: this is what Pascal's
+    /// matrix to the power `by` does. By repeated synthetic division.
+    fn translate(&mut self, by: u32) {
+        if by == 0 {
+            return;
+        }
+        let coefficients = &mut self.places[..self.count];
+        for lowest in 0..coefficients.len().saturating_sub(1) {
+            for place in (lowest..coefficients.len() - 1).rev() {
+                coefficients[place] =
+                    (coefficients[place] + u64::from(by) * coefficients[place + 1]) % self.base;
+            }
         }
     }
 }
@@ -157,8 +253,8 @@ mod tests {
     #[test]
     fn translation_is_a_power_of_pascals_matrix() {
         // (x + 2)^3 = x^3 + 6 x^2 + 12 x + 8, modulo 7.
-        let mut cube = [0, 0, 0, 1];
-        translate(&mut cube, 2, 7);
-        assert_eq!(cube, [1, 5, 6, 1]);
+        let mut cube = Digits::of(7_u64.pow(3), 7);
+        cube.translate(2);
+        assert_eq!((cube.count, &cube.places[..4]), (4, &[1, 5, 6, 1][..]));
     }
 }

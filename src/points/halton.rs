@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use super::block::{Block, vectorised};
 use super::digits::{Base, CHUNK, CHUNKS, Column};
 use super::scramble::{DigitScramble, Plain};
-use super::{Independent, PointSet, rows};
+use super::{Independent, PointSet, fill_singly};
 use crate::Error;
 
 /// Halton's points: the coordinate in dimension `d` is the radical inverse of the index in the base that is the prime
@@ -115,33 +115,12 @@ impl<S: DigitScramble> PointSet for Halton<S> {
     }
 
     fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
-        // A wrapped first index would break the runs of indices.
-        let contiguous = self
-            .first
-            .checked_add(first)
-            .is_some_and(|first| first.checked_add(out.len() as u64).is_some());
-        if S::NESTED || !contiguous {
-            for (index, row) in rows(first, &dimensions, out) {
-                for (dimension, coordinate) in dimensions.clone().zip(row) {
-                    *coordinate = self.coordinate(index, dimension);
-                }
-            }
-            return;
-        }
-        let first = self.first + first;
-        let mut block = Block::new(first, dimensions, out, self.dimensions(), self.seed());
+        let Some(start) = self.start_of_block(first, out.len()) else {
+            return fill_singly(self, first, dimensions, out);
+        };
+        let mut block = Block::new(start, dimensions, out, self.dimensions(), self.seed());
         let inside = block.dimensions.clone();
-        for (tile, start) in inside
-            .clone()
-            .step_by(TOGETHER)
-            .zip((0..).step_by(TOGETHER))
-        {
-            let count = TOGETHER.min((inside.end - tile) as usize);
-            vectorised(
-                #[inline(always)]
-                || self.fill_tile(&mut block, tile, start..start + count),
-            );
-        }
+        self.fill_columns(&mut block, inside, 0);
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "at most 2^16 bases")]
@@ -167,6 +146,29 @@ struct Room {
 }
 
 impl<S: DigitScramble> Halton<S> {
+    /// The index that the point `first` of a block of `length` coordinates has in the whole sequence, if blocks are worth it.
+    pub(super) fn start_of_block(&self, first: u64, length: usize) -> Option<u64> {
+        let start = self.first.checked_add(first)?;
+        // A wrapped index would break the runs of indices.
+        let contiguous = start.checked_add(length as u64).is_some();
+        (contiguous && !S::NESTED).then_some(start)
+    }
+
+    /// Writes the coordinates in `dimensions` into the columns of the block from `start` on.
+    pub(super) fn fill_columns(&self, block: &mut Block<'_>, dimensions: Range<u32>, start: usize) {
+        let end = dimensions.end;
+        for (tile, start) in dimensions
+            .step_by(TOGETHER)
+            .zip((start..).step_by(TOGETHER))
+        {
+            let count = TOGETHER.min((end - tile) as usize);
+            vectorised(
+                #[inline(always)]
+                || self.fill_tile(block, tile, start..start + count),
+            );
+        }
+    }
+
     /// The table of what the first digits make in one dimension, if there is one or `count` points are worth one. Tables of
     /// large bases are not kept.
     fn table(&self, dimension: usize, key: u64, count: usize) -> Option<Cow<'_, [f64]>> {

@@ -1,8 +1,11 @@
 //! Hammersley's points.
 
+use core::ops::Range;
+
+use super::block::Block;
 use super::radical_inverse::{BELOW_ONE, ratio};
 use super::scramble::{DigitScramble, Plain};
-use super::{Halton, Independent, PointSet};
+use super::{Halton, Independent, PointSet, fill_singly};
 use crate::Error;
 
 /// Hammersley's points: one axis holds `(index + offset) / count`, the others are
@@ -141,6 +144,30 @@ impl<S: DigitScramble> PointSet for Hammersley<S> {
 
     fn dimensions(&self) -> u32 {
         self.dimensions
+    }
+
+    fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+        let Some(start) = self.halton.start_of_block(first, out.len()) else {
+            return fill_singly(self, first, dimensions, out);
+        };
+        let seed = self.halton.seed();
+        let mut block = Block::new(start, dimensions, out, self.dimensions, seed);
+        let Range { start, end } = block.dimensions;
+        // Halton's dimensions, before the axis and after it.
+        let before = start..end.min(self.axis).max(start);
+        let after = start.max(self.axis + 1)..end;
+        self.halton.fill_columns(&mut block, before, 0);
+        if !after.is_empty() {
+            let column = (after.start - start) as usize;
+            let after = after.start - 1..after.end - 1;
+            self.halton.fill_columns(&mut block, after, column);
+        }
+        if (start..end).contains(&self.axis) {
+            let column = (self.axis - start) as usize;
+            for (row, index) in block.out.chunks_exact_mut(block.width).zip(first..) {
+                row[column] = fraction(index % self.count, self.offset, self.count);
+            }
+        }
     }
 }
 

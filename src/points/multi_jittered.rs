@@ -1,9 +1,13 @@
 //! Correlated multi-jittered points.
 
+use core::ops::Range;
+
 use super::PointSet;
-use super::n_rooks::within;
+use super::finite::{self, CHUNK, Column, Finite};
+use super::permutation::Permutation;
+use super::strata::{Divisor, within, write_within};
 use crate::Error;
-use crate::hash::{hash, permute, unit};
+use crate::hash::{hash, permute, prepare, unit};
 
 /// Correlated multi-jittered points: in two dimensions one point in every cell of a grid, and at the same time one in every
 /// one of `count` strata of each axis.[^kensler]
@@ -126,6 +130,76 @@ impl PointSet for MultiJittered {
 
     fn size(&self) -> Option<u64> {
         Some(self.columns * self.rows)
+    }
+
+    fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+        finite::fill(self, first, dimensions, out);
+    }
+}
+
+impl Finite for MultiJittered {
+    type Column = Axis;
+
+    fn column(&self, set: u64, dimension: u32) -> Axis {
+        let (columns, rows, count) = (self.columns, self.rows, self.columns * self.rows);
+        let (pair, axis) = (dimension / 2, dimension % 2);
+        let key = hash(hash(self.seed, set), u64::from(pair));
+        let order = || Permutation::new(count, hash(key, 0));
+        let upright = axis == 0;
+        Axis {
+            count,
+            order: (pair > 0).then(order),
+            columns,
+            rows,
+            fine: if upright {
+                Permutation::new(rows, hash(key, 1))
+            } else {
+                Permutation::new(columns, hash(key, 2))
+            },
+            upright,
+            offsets: prepare(hash(!key, u64::from(axis))),
+        }
+    }
+
+    fn seed(&self) -> u64 {
+        self.seed
+    }
+}
+
+/// What the points of one set have in common in one dimension.
+pub(super) struct Axis {
+    count: u64,
+    order: Option<Permutation>,
+    columns: u64,
+    rows: u64,
+    /// Inside the cells.
+    fine: Permutation,
+    /// Whether this is the first axis of a pair.
+    upright: bool,
+    offsets: u64,
+}
+
+impl Column for Axis {
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the count is at most 2^32")]
+    fn write(&self, places: &[u32; CHUNK], out: &mut [f64; CHUNK]) {
+        let mut cells = *places;
+        if let Some(order) = &self.order {
+            order.apply(&mut cells);
+        }
+        let columns = Divisor::new(self.columns);
+        let mut fine = cells.map(|cell| columns.divide(cell).whole);
+        let mut coarse = cells.map(|cell| columns.divide(cell).rest);
+        let mut finer = self.rows as u32;
+        if !self.upright {
+            core::mem::swap(&mut fine, &mut coarse);
+            finer = self.columns as u32;
+        }
+        self.fine.apply(&mut fine);
+        for (stratum, fine) in coarse.iter_mut().zip(fine) {
+            *stratum = stratum.wrapping_mul(finer).wrapping_add(fine);
+        }
+        write_within(&coarse, self.count, self.offsets, &cells, out);
     }
 }
 

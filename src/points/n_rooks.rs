@@ -2,11 +2,12 @@
 
 use core::ops::Range;
 
-use super::block::{Block, vectorised};
-use super::radical_inverse::BELOW_ONE;
-use super::{PointSet, rows};
+use super::PointSet;
+use super::finite::{self, CHUNK, Column, Finite};
+use super::permutation::Permutation;
+use super::strata::{within, write_within};
 use crate::Error;
-use crate::hash::{Bijection, FEW, ROUNDS, hash, permute, unit};
+use crate::hash::{hash, permute, prepare, unit};
 
 /// N-rooks points, also Latin hypercube samples: with `count` points, every one of `count` equal strata of every
 /// axis holds exactly one.[^shirley] [^mckay]
@@ -83,114 +84,39 @@ impl PointSet for NRooks {
     }
 
     fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
-        if self.count <= FEW || self.count > 1 << 32 {
-            for (index, row) in rows(first, &dimensions, out) {
-                for (dimension, coordinate) in dimensions.clone().zip(row) {
-                    *coordinate = self.coordinate(index, dimension);
-                }
-            }
-            return;
-        }
-        let block = Block::new(first, dimensions, out, u32::MAX, 0);
-        let (width, mut index) = (block.width, block.first);
-        // The rows of one set after the other.
-        let mut out = block.out;
-        while !out.is_empty() {
-            let (set, place) = (index / self.count, index % self.count);
-            let left = usize::try_from(self.count - place).unwrap_or(usize::MAX);
-            let (now, later) = out.split_at_mut(out.len().min(left.saturating_mul(width)));
-            for start in (0..width).step_by(LANES) {
-                let dimensions = block.dimensions.clone().skip(start).take(LANES);
-                vectorised(
-                    #[inline(always)]
-                    || {
-                        let columns = Columns::new(dimensions.map(|d| self.key(set, d)));
-                        for (index, row) in (place..).zip(now.chunks_exact_mut(width)) {
-                            columns.write(self.count, index, &mut row[start..]);
-                        }
-                    },
-                );
-            }
-            index = index.wrapping_add(left as u64);
-            out = later;
-        }
+        finite::fill(self, first, dimensions, out);
     }
 }
 
-/// Dimensions that are computed side by side.
-const LANES: usize = 64;
+impl Finite for NRooks {
+    type Column = Rooks;
 
-/// The keys of some dimensions, and their bijections of words of up to 32 bits.
-struct Columns {
-    keys: [u64; LANES],
-    summands: [[u32; LANES]; ROUNDS],
-    multipliers: [[u32; LANES]; ROUNDS],
-    last: [u32; LANES],
+    fn column(&self, set: u64, dimension: u32) -> Rooks {
+        let key = self.key(set, dimension);
+        Rooks {
+            count: self.count,
+            strata: Permutation::new(self.count, key),
+            offsets: prepare(!key),
+        }
+    }
+
+    fn seed(&self) -> u64 {
+        self.seed
+    }
 }
 
-impl Columns {
+/// What the points of one set have in common in one dimension.
+pub(super) struct Rooks {
+    count: u64,
+    strata: Permutation,
+    offsets: u64,
+}
+
+impl Column for Rooks {
     #[inline(always)]
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "arithmetic modulo 2^32 needs no more"
-    )]
-    fn new(keys: impl Iterator<Item = u64>) -> Self {
-        let mut columns = Self {
-            keys: [0; LANES],
-            summands: [[0; LANES]; ROUNDS],
-            multipliers: [[0; LANES]; ROUNDS],
-            last: [0; LANES],
-        };
-        for (lane, key) in keys.enumerate() {
-            let bijection = Bijection::new(key);
-            columns.keys[lane] = key;
-            columns.last[lane] = bijection.last as u32;
-            for round in 0..ROUNDS {
-                columns.summands[round][lane] = bijection.summands[round] as u32;
-                columns.multipliers[round][lane] = bijection.multipliers[round] as u32;
-            }
-        }
-        columns
+    fn write(&self, places: &[u32; CHUNK], out: &mut [f64; CHUNK]) {
+        let mut strata = *places;
+        self.strata.apply(&mut strata);
+        write_within(&strata, self.count, self.offsets, places, out);
     }
-
-    /// Writes the coordinates of the point `index` of a set of `count`: as many as `row` has, [`LANES`] at most.
-    #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "the count is at most 2^32")]
-    fn write(&self, count: u64, index: u64, row: &mut [f64]) {
-        let bits = u64::BITS - (count - 1).leading_zeros();
-        let (mask, half) = (u32::MAX >> (u32::BITS - bits), bits.div_ceil(2));
-        let mut images = [0; LANES];
-        for (lane, image) in images[..row.len().min(LANES)].iter_mut().enumerate() {
-            let mut word = index as u32;
-            for round in 0..ROUNDS {
-                word = word.wrapping_add(self.summands[round][lane]);
-                word = word.wrapping_mul(self.multipliers[round][lane]) & mask;
-                word ^= word >> half;
-            }
-            *image = word.wrapping_add(self.last[lane]) & mask;
-        }
-        // Images past the count walk on along their cycles.
-        if !count.is_power_of_two() {
-            for (&key, image) in self.keys.iter().zip(&mut images).take(row.len()) {
-                if u64::from(*image) >= count {
-                    let bijection = Bijection::new(key);
-                    while u64::from(*image) >= count {
-                        *image = bijection.apply((*image).into(), bits) as u32;
-                    }
-                }
-            }
-        }
-        for ((u, &image), &key) in row.iter_mut().zip(&images).zip(&self.keys) {
-            *u = within(image.into(), count, unit(hash(!key, index)));
-        }
-    }
-}
-
-/// The point at the fraction `offset`, in `[0, 1)`, of the stratum `stratum` of `count` equal ones.
-///
-/// In `[0, 1)`: the quotient is rounded once, from a number below 1; where it rounds to 1.0, as it can past
-/// 2^52 strata, the largest number below is taken.
-#[inline]
-pub(super) fn within(stratum: u64, count: u64, offset: f64) -> f64 {
-    ((stratum as f64 + offset) / count as f64).min(BELOW_ONE)
 }

@@ -1,11 +1,15 @@
 //! Points from orthogonal arrays.
 
+use core::ops::Range;
+
+use super::finite::{self, CHUNK, Column, Finite};
 use super::halton::primes_up_to;
 use super::multi_jittered::rounded_root;
-use super::n_rooks::within;
+use super::permutation::{Permutation, permute_each};
+use super::strata::{Divisor, within, write_within};
 use super::{Independent, PointSet};
 use crate::Error;
-use crate::hash::{hash, permute, unit};
+use crate::hash::{hash, hash_prepared, permute, prepare, unit};
 
 /// Points from an orthogonal array of strength 2: `p^2` points with one in every cell of the `p` by `p` grid of every pair of
 /// dimensions, and one in every one of the `p^2` strata of each axis.[^owen] [^tang]
@@ -107,6 +111,73 @@ impl PointSet for OrthogonalArray {
 
     fn dimensions(&self) -> u32 {
         self.dimensions
+    }
+
+    fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+        finite::fill(self, first, dimensions, out);
+    }
+}
+
+impl Finite for OrthogonalArray {
+    type Column = Lines;
+
+    fn column(&self, set: u64, dimension: u32) -> Lines {
+        let key = hash(hash(self.seed, set), u64::from(dimension));
+        Lines {
+            levels: self.levels,
+            x: u64::from(dimension),
+            order: Permutation::new(self.levels, key),
+            ranks: prepare(key),
+            offsets: prepare(!key),
+        }
+    }
+
+    fn seed(&self) -> u64 {
+        self.seed
+    }
+}
+
+/// What the points of one set have in common in one dimension.
+pub(super) struct Lines {
+    levels: u64,
+    x: u64,
+    /// That of the levels.
+    order: Permutation,
+    ranks: u64,
+    offsets: u64,
+}
+
+impl Column for Lines {
+    #[inline(always)]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the squared number of levels is at most 2^32"
+    )]
+    fn write(&self, places: &[u32; CHUNK], out: &mut [f64; CHUNK]) {
+        let (levels, x) = (self.levels as u32, self.x as u32);
+        let divisor = Divisor::new(self.levels);
+        let mut ranks = places.map(|place| divisor.divide(place).whole);
+        let mut strata = places.map(|place| divisor.divide(place).rest);
+        if self.x < self.levels {
+            for (level, &a) in strata.iter_mut().zip(&ranks) {
+                *level = divisor.divide(a * x + *level).rest;
+            }
+        } else {
+            core::mem::swap(&mut ranks, &mut strata);
+        }
+        self.order.apply(&mut strata);
+        let keys = strata.map(|level| hash_prepared(self.ranks, level.into()));
+        permute_each(&mut ranks, self.levels, &keys);
+        for (stratum, rank) in strata.iter_mut().zip(ranks) {
+            *stratum = *stratum * levels + rank;
+        }
+        write_within(
+            &strata,
+            self.levels * self.levels,
+            self.offsets,
+            places,
+            out,
+        );
     }
 }
 

@@ -1,9 +1,13 @@
 //! One random point in every cell of a grid.
 
+use core::ops::Range;
+
 use super::PointSet;
-use super::n_rooks::within;
+use super::finite::{self, CHUNK, Column, Finite};
+use super::permutation::Permutation;
+use super::strata::{Divisor, within, write_within};
 use crate::Error;
-use crate::hash::{hash, permute, unit};
+use crate::hash::{hash, permute, prepare, unit};
 
 /// Stratified points, also called jittered: one uniform point in every cell of a regular grid.[^cook]
 ///
@@ -89,6 +93,13 @@ impl Stratified {
     pub fn cells(&self, dimension: u32) -> u64 {
         self.cells + u64::from(dimension % self.dimensions < self.longer)
     }
+
+    /// From one cell to the next along an axis: they are numbered with the first axis running fastest.
+    #[inline]
+    fn stride(&self, axis: u32) -> u64 {
+        let longer = axis.min(self.longer);
+        (self.cells + 1).pow(longer) * self.cells.pow(axis - longer)
+    }
 }
 
 /// Cells of a grid with `cells + 1` along `longer` axes and `cells` along the others.
@@ -108,12 +119,9 @@ impl PointSet for Stratified {
         } else {
             permute(index, self.count, hash(key, u64::from(grid)))
         };
-        // The cells are numbered with the first axis running fastest.
-        let longer = axis.min(self.longer);
-        let stride = (self.cells + 1).pow(longer) * self.cells.pow(axis - longer);
         let cells = self.cells(axis);
         within(
-            cell / stride % cells,
+            cell / self.stride(axis) % cells,
             cells,
             unit(hash(hash(!key, u64::from(dimension)), index)),
         )
@@ -121,5 +129,50 @@ impl PointSet for Stratified {
 
     fn size(&self) -> Option<u64> {
         Some(self.count)
+    }
+
+    fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
+        finite::fill(self, first, dimensions, out);
+    }
+}
+
+impl Finite for Stratified {
+    type Column = Axis;
+
+    fn column(&self, set: u64, dimension: u32) -> Axis {
+        let (grid, axis) = (dimension / self.dimensions, dimension % self.dimensions);
+        let key = hash(self.seed, set);
+        let order = || Permutation::new(self.count, hash(key, u64::from(grid)));
+        Axis {
+            order: (grid > 0).then(order),
+            stride: Divisor::new(self.stride(axis)),
+            cells: self.cells(axis),
+            offsets: prepare(hash(!key, u64::from(dimension))),
+        }
+    }
+
+    fn seed(&self) -> u64 {
+        self.seed
+    }
+}
+
+/// What the points of one set have in common in one dimension.
+pub(super) struct Axis {
+    order: Option<Permutation>,
+    stride: Divisor,
+    cells: u64,
+    offsets: u64,
+}
+
+impl Column for Axis {
+    #[inline(always)]
+    fn write(&self, places: &[u32; CHUNK], out: &mut [f64; CHUNK]) {
+        let mut cells = *places;
+        if let Some(order) = &self.order {
+            order.apply(&mut cells);
+        }
+        let along = Divisor::new(self.cells);
+        let strata = cells.map(|cell| along.divide(self.stride.divide(cell).whole).rest);
+        write_within(&strata, self.cells, self.offsets, places, out);
     }
 }

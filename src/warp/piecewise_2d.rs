@@ -61,8 +61,8 @@ impl Warp<2> for Piecewise2d {
 
     #[inline]
     fn sample(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        let y = self.marginal.sample([v]);
-        let (row, _) = self.marginal.locate(v);
+        let (row, within) = self.marginal.locate(v);
+        let y = self.marginal.place(row, within);
         // A row that is hit has weight; the middle is for rows whose weight vanished in the sum.
         let x = self.rows[row].as_ref().map_or(0.5, |row| row.sample([u]));
         [x, y]

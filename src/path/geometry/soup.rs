@@ -3,6 +3,7 @@
 use glam::Vec3A;
 
 use super::Found;
+use super::flats::Flats;
 use super::tree::Tree;
 use crate::path::Shading;
 use crate::path::ray::{Ray, Surface};
@@ -16,6 +17,8 @@ pub(super) struct Soup {
     starts: Vec<usize>,
     flats: Vec<Flat>,
     tree: Tree,
+    /// Those of each leaf of the tree.
+    blocks: Vec<Flats>,
 }
 
 impl Soup {
@@ -28,11 +31,16 @@ impl Soup {
             flats.extend((0..mesh.triangles().len()).map(|triangle| mesh.flat(triangle)));
         }
         let tree = (!flats.is_empty()).then(|| Tree::new(&flats))?;
+        let blocks = tree
+            .leaves()
+            .flat_map(|leaf| Flats::blocks(leaf.map(|triangle| &flats[triangle])))
+            .collect();
         Some(Self {
             meshes,
             starts,
             flats,
             tree,
+            blocks,
         })
     }
 
@@ -42,12 +50,22 @@ impl Soup {
 
     #[inline]
     pub(super) fn nearest(&self, ray: &Ray, limit: f32) -> Option<Found> {
-        self.tree.nearest(&self.flats, ray, limit)
+        self.tree.nearest_in_leaves(
+            ray,
+            limit,
+            #[inline(always)]
+            |leaf, limit| self.blocks[leaf].nearest(ray, limit),
+        )
     }
 
     #[inline]
     pub(super) fn occluded(&self, ray: &Ray, limit: f32) -> bool {
-        self.tree.occluded(&self.flats, ray, limit)
+        self.tree.any_in_leaves(
+            ray,
+            limit,
+            #[inline(always)]
+            |leaf| self.blocks[leaf].occlude(ray, limit),
+        )
     }
 
     #[inline]

@@ -1,13 +1,12 @@
 //! A sweep over few shapes, eight flat ones at a time.
 
 use super::Found;
+use super::flats::{Flats, LANES};
 use super::kind::{Kind, divides};
 use crate::path::ray::Ray;
-use crate::path::shape::{Flat, Primitive, Shape};
+use crate::path::shape::{Primitive, Shape};
 
 /// The shapes, laid out for vector code.
-///
-/// The arithmetic is plain `f32`, lane by lane: vectors of any width, and none, give the same bits.
 #[derive(Debug)]
 pub(in crate::path) struct Sweep {
     flats: Vec<Flats>,
@@ -19,82 +18,6 @@ pub(in crate::path) struct Sweep {
     others: Vec<(usize, Primitive)>,
     #[cfg(feature = "simd")]
     arch: pulp::Arch,
-}
-
-const LANES: usize = 8;
-
-type Lanes = [f32; LANES];
-
-/// Eight flat shapes, one a lane. An empty lane is all zeros: a ray's distance to it is NaN, no hit.
-#[derive(Clone, Copy, Debug, Default)]
-struct Flats {
-    corner: [Lanes; 3],
-    normal: [Lanes; 3],
-    first_dual: [Lanes; 3],
-    second_dual: [Lanes; 3],
-    slack: [Lanes; 2],
-    slant: Lanes,
-}
-
-impl Flats {
-    /// Blocks of the given shapes in their order.
-    fn blocks<'a>(shapes: impl Iterator<Item = &'a Flat>) -> Vec<Self> {
-        let mut blocks = Vec::new();
-        for (place, flat) in shapes.enumerate() {
-            let lane = place % LANES;
-            if lane == 0 {
-                blocks.push(Self::default());
-            }
-            if let Some(block) = blocks.last_mut() {
-                block.set(lane, flat);
-            }
-        }
-        blocks
-    }
-
-    fn set(&mut self, lane: usize, flat: &Flat) {
-        for axis in 0..3 {
-            self.corner[axis][lane] = flat.corner[axis];
-            self.normal[axis][lane] = flat.normal[axis];
-            self.first_dual[axis][lane] = flat.first_dual[axis];
-            self.second_dual[axis][lane] = flat.second_dual[axis];
-        }
-        self.slack[0][lane] = flat.slack[0];
-        self.slack[1][lane] = flat.slack[1];
-        self.slant[lane] = flat.slant;
-    }
-
-    /// The distances at which the ray meets each of them, as [`Flat::intersect`]; infinite where it does not.
-    #[inline(always)]
-    fn distances(&self, origin: [f32; 3], direction: [f32; 3], limit: f32) -> Lanes {
-        let mut distances = [0.0; LANES];
-        for lane in 0..LANES {
-            let offset: [f32; 3] = [
-                self.corner[0][lane] - origin[0],
-                self.corner[1][lane] - origin[1],
-                self.corner[2][lane] - origin[2],
-            ];
-            let dot = |a: [f32; 3], b: &[Lanes; 3]| {
-                a[0] * b[0][lane] + a[1] * b[1][lane] + a[2] * b[2][lane]
-            };
-            let distance = dot(offset, &self.normal) * dot(direction, &self.normal).recip();
-            let inside = [
-                direction[0] * distance - offset[0],
-                direction[1] * distance - offset[1],
-                direction[2] * distance - offset[2],
-            ];
-            let s = dot(inside, &self.first_dual);
-            let t = dot(inside, &self.second_dual);
-            let hit = (distance > 0.0)
-                & (distance < limit)
-                & (s >= -self.slack[0][lane])
-                & (t >= -self.slack[1][lane])
-                & (s + self.slant[lane] * t <= 1.0 + self.slack[0][lane])
-                & (t + self.slant[lane] * s <= 1.0 + self.slack[1][lane]);
-            distances[lane] = if hit { distance } else { f32::INFINITY };
-        }
-        distances
-    }
 }
 
 /// The place, in the order of the flat shapes, of a lane of a block.
@@ -167,13 +90,12 @@ impl Sweep {
     /// The nearest flat shape; of several at the same distance the first.
     #[inline(always)]
     fn nearest_flat(&self, ray: &Ray) -> Option<Found> {
-        let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
         let mut nearest = [f32::INFINITY; LANES];
         // The block of each, as a number of the same width and kind: so both are selected alike.
         let mut blocks = [0.0_f32; LANES];
         let mut block = 0.0;
         for flats in &self.flats {
-            let distances = flats.distances(origin, direction, f32::INFINITY);
+            let distances = flats.distances(ray, f32::INFINITY);
             for lane in 0..LANES {
                 let nearer = distances[lane] < nearest[lane];
                 nearest[lane] = if nearer {
@@ -204,15 +126,9 @@ impl Sweep {
 
 #[inline(always)]
 fn any_occludes(blocks: &[Flats], ray: &Ray, limit: f32) -> bool {
-    let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
     // A loop, not `any`: its closure would not be compiled for the machine at hand.
     for flats in blocks {
-        let distances = flats.distances(origin, direction, limit);
-        let mut met = false;
-        for distance in distances {
-            met |= distance < f32::INFINITY;
-        }
-        if met {
+        if flats.occlude(ray, limit) {
             return true;
         }
     }

@@ -5,26 +5,31 @@ use std::time::Duration;
 use glam::Vec3A;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
-use obvhs::cwbvh::CwBvh;
-use obvhs::cwbvh::builder::build_cwbvh;
-use obvhs::ray::{Ray as TreeRay, RayHit};
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::builder::build_bvh2;
+use obvhs::bvh2::node::Bvh2Node;
 
+use super::flats::LANES;
+use super::node::{Child, Node, Probe, WIDER};
+use super::stack::Stack;
 use super::{Found, around};
 use crate::path::ray::{Ray, gamma};
 use crate::path::shape::Shape;
 
-/// An eight-way tree of boxes around the shapes.
+/// An eight-way tree of boxes around the shapes, with up to eight shapes in a leaf.
 ///
-/// The tree is built of the shapes scaled up by a power of two, which is exact, to an extent of about
-/// [`EXTENT`]: its traversal ignores boxes within 1e-4 of the origin of the ray, which is nothing there.
+/// A binary tree of `obvhs`, of which every node takes in those below it until it has eight boxes. The first node is the root.
 pub(super) struct Tree {
-    tree: CwBvh,
-    scale: f32,
+    nodes: Vec<Node>,
+    leaves: Vec<Leaf>,
+    #[cfg(feature = "simd")]
+    arch: pulp::Arch,
 }
 
-/// The logarithm of the extent of the scaled scene: its square and its product with the largest inverse of a
-/// direction, 2^23, stay in the range of `f32`.
-const EXTENT: f32 = 40.0;
+/// The shapes of a leaf; [`NONE`] where there are fewer than eight.
+type Leaf = [u32; LANES];
+
+const NONE: u32 = u32::MAX;
 
 impl Tree {
     /// The tree of at least one shape.
@@ -37,8 +42,10 @@ impl Tree {
     pub(super) fn around(boxes: &[[Vec3A; 2]]) -> Self {
         let [low, high] = around(boxes.iter().copied());
         let extent = low.abs().max(high.abs()).max_element();
-        let extent = extent.max(f32::MIN_POSITIVE);
-        let scale = (EXTENT - extent.log2().round()).clamp(-120.0, 120.0).exp2();
+        // A power of two, which is exact, so that areas stay in the range of `f32`.
+        let scale = (-extent.max(f32::MIN_POSITIVE).log2().round())
+            .clamp(-120.0, 120.0)
+            .exp2();
         let boxes: Vec<Aabb> = boxes
             .iter()
             .map(|&corners| scaled(corners, scale))
@@ -49,10 +56,60 @@ impl Tree {
         } else {
             BvhBuildParams::fast_build()
         };
-        Self {
-            tree: build_cwbvh(&boxes, parameters, &mut Duration::default()),
-            scale,
+        let parameters = BvhBuildParams {
+            max_prims_per_leaf: SHAPES,
+            collapse_traversal_cost: TRAVERSAL_COST,
+            ..parameters
+        };
+        let binary = build_bvh2(&boxes, parameters, &mut Duration::default());
+        Self::of(&binary, scale)
+    }
+
+    /// The tree of the boxes of a binary one, which is scaled.
+    fn of(binary: &Bvh2, scale: f32) -> Self {
+        let mut tree = Self {
+            nodes: vec![Node::EMPTY],
+            leaves: Vec::new(),
+            #[cfg(feature = "simd")]
+            arch: pulp::Arch::new(),
+        };
+        let mut open = vec![(0, vec![binary.nodes[0]])];
+        while let Some((place, mut boxes)) = open.pop() {
+            while boxes.len() < LANES
+                && let Some(largest) = largest(&boxes)
+            {
+                let first = boxes.swap_remove(largest).first_index as usize;
+                boxes.extend_from_slice(&binary.nodes[first..first + 2]);
+            }
+            for (lane, node) in boxes.into_iter().enumerate() {
+                let bounds = [node.aabb.min, node.aabb.max].map(|end| (end / scale).to_array());
+                let first = node.first_index as usize;
+                let child = if node.is_leaf() {
+                    let mut leaf = [NONE; LANES];
+                    let shapes = &binary.primitive_indices[first..];
+                    leaf.iter_mut()
+                        .zip(&shapes[..node.prim_count as usize])
+                        .for_each(|(slot, &shape)| *slot = shape);
+                    tree.leaves.push(leaf);
+                    Child::leaf(tree.leaves.len() - 1)
+                } else {
+                    tree.nodes.push(Node::EMPTY);
+                    let index = tree.nodes.len() - 1;
+                    open.push((index, binary.nodes[first..first + 2].to_vec()));
+                    Child::node(index)
+                };
+                tree.nodes[place].set(lane, bounds, child);
+            }
         }
+        tree
+    }
+
+    /// The shapes of each leaf.
+    pub(super) fn leaves(&self) -> impl Iterator<Item = impl Iterator<Item = usize> + '_> {
+        self.leaves.iter().map(|leaf| {
+            let shapes = leaf.iter().take_while(|&&shape| shape != NONE);
+            shapes.map(|&shape| shape as usize)
+        })
     }
 
     #[inline]
@@ -77,15 +134,18 @@ impl Tree {
         limit: f32,
         mut meet: impl FnMut(usize, f32) -> Option<f32>,
     ) -> Option<Found> {
-        let mut hit = RayHit::none();
-        let whole = self.ray(ray, limit);
-        let found = self.tree.ray_traverse(whole, &mut hit, |so_far, slot| {
-            meet(self.shape(slot), so_far.tmax / self.scale)
-                .map_or(f32::INFINITY, |distance| distance * self.scale)
-        });
-        found.then(|| Found {
-            shape: self.shape(hit.primitive_id as usize),
-            distance: hit.t / self.scale,
+        self.nearest_in_leaves(ray, limit, |leaf, mut limit| {
+            let mut nearest = None;
+            for (lane, &shape) in self.leaves[leaf].iter().enumerate() {
+                if shape == NONE {
+                    break;
+                }
+                if let Some(distance) = meet(shape as usize, limit) {
+                    limit = distance;
+                    nearest = Some((lane, distance));
+                }
+            }
+            nearest
         })
     }
 
@@ -97,37 +157,101 @@ impl Tree {
         limit: f32,
         mut meet: impl FnMut(usize, f32) -> bool,
     ) -> bool {
-        let segment = self.ray(ray, limit);
-        !self.tree.ray_traverse_miss(segment, |_, slot| {
-            if meet(self.shape(slot), limit) {
-                0.0
-            } else {
-                f32::INFINITY
-            }
+        self.any_in_leaves(ray, limit, |leaf| {
+            let mut shapes = self.leaves[leaf].iter().take_while(|&&shape| shape != NONE);
+            shapes.any(|&shape| meet(shape as usize, limit))
         })
     }
 
-    /// The ray as the tree takes it: scaled, and without the zeros of negative sign, whose octant the tree takes for that of
-    /// the positive ones but whose inverses it does not.
+    /// The same leaf by leaf: `meet` returns the place in a leaf and the distance.
     #[inline]
-    fn ray(&self, ray: &Ray, limit: f32) -> TreeRay {
-        TreeRay::new(
-            ray.origin * self.scale,
-            ray.direction + Vec3A::ZERO,
-            0.0,
-            limit * self.scale,
+    pub(super) fn nearest_in_leaves(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        mut meet: impl FnMut(usize, f32) -> Option<(usize, f32)>,
+    ) -> Option<Found> {
+        self.vectorised(
+            #[inline(always)]
+            || {
+                let probe = Probe::new(ray);
+                let mut limit = limit;
+                let mut nearest = None;
+                let mut stack = Stack::new(Child::node(0));
+                while let Some(visit) = stack.pop() {
+                    if visit.distance > limit * WIDER {
+                        continue;
+                    }
+                    let index = visit.child.index();
+                    if !visit.child.is_leaf() {
+                        let node = &self.nodes[index];
+                        stack.push(node, &probe.enter(node, limit));
+                    } else if let Some((lane, distance)) = meet(index, limit) {
+                        limit = distance;
+                        nearest = Some((index, lane));
+                    }
+                }
+                nearest.map(|(leaf, lane)| Found {
+                    shape: self.leaves[leaf][lane] as usize,
+                    distance: limit,
+                })
+            },
         )
     }
 
-    /// What is in a slot of the tree.
+    /// Whether any leaf holds something that is met: `meet` says whether one does.
     #[inline]
-    fn shape(&self, slot: usize) -> usize {
-        self.tree.primitive_indices[slot] as usize
+    pub(super) fn any_in_leaves(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        mut meet: impl FnMut(usize) -> bool,
+    ) -> bool {
+        self.vectorised(
+            #[inline(always)]
+            || {
+                let probe = Probe::new(ray);
+                let mut stack = Stack::new(Child::node(0));
+                while let Some(visit) = stack.pop() {
+                    let index = visit.child.index();
+                    if !visit.child.is_leaf() {
+                        let node = &self.nodes[index];
+                        stack.push(node, &probe.enter(node, limit));
+                    } else if meet(index) {
+                        return true;
+                    }
+                }
+                false
+            },
+        )
     }
+
+    /// Runs a walk in the vector code of the machine at hand.
+    #[inline(always)]
+    fn vectorised<R>(&self, walk: impl FnOnce() -> R) -> R {
+        #[cfg(feature = "simd")]
+        return self.arch.dispatch(walk);
+        #[cfg(not(feature = "simd"))]
+        walk()
+    }
+}
+
+/// The largest box that is no leaf.
+fn largest(boxes: &[Bvh2Node]) -> Option<usize> {
+    let inner = (0..boxes.len()).filter(|&place| !boxes[place].is_leaf());
+    let area = |place: &usize| boxes[*place].aabb.half_area();
+    inner.max_by(|a, b| area(a).total_cmp(&area(b)))
 }
 
 /// From so many boxes on, the tree is built fast.
 const SLOW: usize = 100_000;
+
+/// Shapes in a leaf at most.
+#[expect(clippy::cast_possible_truncation, reason = "8")]
+const SHAPES: u32 = LANES as u32;
+
+/// What visiting a node costs, in tests of single shapes.
+const TRAVERSAL_COST: f32 = 8.0;
 
 /// A scaled box, widened by what rounding does to a ray's way to it.
 fn scaled(corners: [Vec3A; 2], scale: f32) -> Aabb {
@@ -139,7 +263,69 @@ fn scaled(corners: [Vec3A; 2], scale: f32) -> Aabb {
 impl core::fmt::Debug for Tree {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.debug_struct("Tree")
-            .field("nodes", &self.tree.nodes.len())
+            .field("nodes", &self.nodes.len())
+            .field("leaves", &self.leaves.len())
             .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hash::{hash, unit_f32};
+    use crate::path::shape::Flat;
+
+    /// Triangles in a cube of edge `size`, every fourth of them twice.
+    fn triangles(count: u64, size: f32) -> Vec<Flat> {
+        let corner = |triangle: u64, k: u64| {
+            core::array::from_fn(|axis| {
+                let word = |k| hash(triangle / 4 * 3 + triangle % 4 % 3, 8 * k + axis as u64);
+                size * (unit_f32(word(0)) + 0.2 * unit_f32(word(k)))
+            })
+        };
+        (0..count)
+            .map(|triangle| Flat::triangle([1, 2, 3].map(|k| corner(triangle, k))).unwrap())
+            .collect()
+    }
+
+    /// Rays through the cube; some run along the axes, with zeros of both signs.
+    fn ray(index: u64, size: f32) -> Ray {
+        let random = |k| unit_f32(hash(!index, k));
+        let axes = [Vec3A::X, Vec3A::NEG_X, -Vec3A::Y, Vec3A::Z, -Vec3A::Z];
+        let direction = match axes.get(usize::try_from(index % 8).unwrap()) {
+            Some(&axis) => axis,
+            None => Vec3A::new(random(0) - 0.5, random(1) - 0.5, random(2) - 0.5).normalize(),
+        };
+        Ray {
+            origin: Vec3A::new(random(3), random(4), random(5)) * (1.2 * size),
+            direction,
+        }
+    }
+
+    #[test]
+    fn a_tree_finds_what_a_look_at_every_shape_finds() {
+        let mut met = 0;
+        for (count, size) in [(1, 1.0), (9, 3.0), (400, 1.0), (400, 1e-15), (400, 1e15)] {
+            let shapes = triangles(count, size);
+            let tree = Tree::new(&shapes);
+            assert_eq!(tree.leaves().flatten().count(), shapes.len());
+            for index in 0..2000 {
+                let ray = ray(index, size);
+                let limit = size * [0.3, f32::INFINITY][usize::from(index % 3 == 0)];
+                let distances = shapes
+                    .iter()
+                    .filter_map(|shape| shape.intersect(&ray, limit));
+                let expected = distances.min_by(f32::total_cmp);
+                let found = tree.nearest(&shapes, &ray, limit);
+                assert_eq!(
+                    found.map(|found| found.distance),
+                    expected,
+                    "{count} {size} {ray:?}"
+                );
+                assert_eq!(tree.occluded(&shapes, &ray, limit), expected.is_some());
+                met += usize::from(expected.is_some());
+            }
+        }
+        assert!(met > 1000, "{met} rays meet something");
     }
 }

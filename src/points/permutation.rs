@@ -1,0 +1,214 @@
+//! Random permutations of many numbers at once.
+
+use super::finite::CHUNK;
+use crate::hash::{Bijection, FEW, ROUNDS, permute};
+
+/// The random permutation of `0..count` that [`permute`] makes of a key, for a count up to 2^32.
+pub(super) struct Permutation {
+    count: u64,
+    kind: Kind,
+}
+
+/// As many as [`FEW`] are.
+const TABLE: usize = 16;
+const _: () = assert!(TABLE as u64 == FEW);
+
+enum Kind {
+    /// The images of few numbers.
+    Table([u32; TABLE]),
+    Walk(Walk),
+}
+
+impl Permutation {
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "images of few numbers")]
+    pub(super) fn new(count: u64, key: u64) -> Self {
+        debug_assert!(count <= 1 << 32);
+        let kind = if count <= FEW {
+            let mut images = [0; TABLE];
+            for (image, number) in images.iter_mut().zip(0..count) {
+                *image = permute(number, count, key) as u32;
+            }
+            Kind::Table(images)
+        } else {
+            Kind::Walk(Walk::new(key))
+        };
+        Self { count, kind }
+    }
+
+    /// Puts their images in the places of `numbers`, all of them below the count.
+    #[inline(always)]
+    pub(super) fn apply(&self, numbers: &mut [u32; CHUNK]) {
+        match &self.kind {
+            Kind::Table(images) => {
+                for number in numbers {
+                    *number = images[*number as usize % images.len()];
+                }
+            }
+            Kind::Walk(walk) => {
+                let bits = Bits::of(self.count);
+                for number in &mut *numbers {
+                    *number = walk.step(*number, bits);
+                }
+                walk_on(numbers, self.count, |_, number| walk.step(number, bits));
+            }
+        }
+    }
+}
+
+/// Puts the images of `numbers`, below `count`, in their places, each under the permutation of `0..count` that the key
+/// in its place selects.
+#[inline(always)]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "images are below the count"
+)]
+pub(super) fn permute_each(numbers: &mut [u32; CHUNK], count: u64, keys: &[u64; CHUNK]) {
+    debug_assert!(count <= 1 << 32);
+    if count <= FEW {
+        for (number, &key) in numbers.iter_mut().zip(keys) {
+            *number = permute(u64::from(*number), count, key) as u32;
+        }
+        return;
+    }
+    let bits = Bits::of(count);
+    for (number, &key) in numbers.iter_mut().zip(keys) {
+        *number = Walk::new(key).step(*number, bits);
+    }
+    walk_on(numbers, count, |lane, number| {
+        Walk::new(keys[lane]).step(number, bits)
+    });
+}
+
+/// Takes the numbers past the count on along their cycles, until all are below it.
+#[inline(always)]
+fn walk_on(numbers: &mut [u32; CHUNK], count: u64, step: impl Fn(usize, u32) -> u32) {
+    if count.is_power_of_two() {
+        return;
+    }
+    // Which they are, collected without a branch for each: half of them may be.
+    let (mut lanes, mut left) = ([0; CHUNK], 0);
+    for (lane, &number) in numbers.iter().enumerate() {
+        lanes[left] = lane;
+        left += usize::from(u64::from(number) >= count);
+    }
+    while left > 0 {
+        // Whole vectors of them; what is past the last is computed in vain.
+        let mut images = [0; CHUNK];
+        let vectors = left.div_ceil(VECTOR);
+        let walking = images
+            .chunks_exact_mut(VECTOR)
+            .zip(lanes.chunks_exact(VECTOR));
+        for (images, lanes) in walking.take(vectors) {
+            for (image, &lane) in images.iter_mut().zip(lanes) {
+                *image = step(lane, numbers[lane]);
+            }
+        }
+        let mut still = 0;
+        for place in 0..left {
+            let (lane, image) = (lanes[place], images[place]);
+            numbers[lane] = image;
+            lanes[still] = lane;
+            still += usize::from(u64::from(image) >= count);
+        }
+        left = still;
+    }
+}
+
+/// Numbers that are taken on together.
+const VECTOR: usize = 16;
+
+/// Of the numbers that a bijection maps.
+#[derive(Clone, Copy)]
+struct Bits {
+    mask: u32,
+    half: u32,
+}
+
+impl Bits {
+    /// The numbers below the next power of two, for a count from 2 to 2^32.
+    #[inline(always)]
+    fn of(count: u64) -> Self {
+        let bits = u64::BITS - (count - 1).leading_zeros();
+        Self {
+            mask: u32::MAX >> (u32::BITS - bits),
+            half: bits.div_ceil(2),
+        }
+    }
+}
+
+/// A [`Bijection`] of words of up to 32 bits.
+struct Walk {
+    summands: [u32; ROUNDS],
+    multipliers: [u32; ROUNDS],
+    last: u32,
+}
+
+impl Walk {
+    #[inline(always)]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "arithmetic modulo 2^32 needs no more"
+    )]
+    fn new(key: u64) -> Self {
+        let bijection = Bijection::new(key);
+        Self {
+            summands: bijection.summands.map(|summand| summand as u32),
+            multipliers: bijection.multipliers.map(|multiplier| multiplier as u32),
+            last: bijection.last as u32,
+        }
+    }
+
+    #[inline(always)]
+    fn step(&self, number: u32, Bits { mask, half }: Bits) -> u32 {
+        let mut word = number;
+        for (summand, &multiplier) in self.summands.iter().zip(&self.multipliers) {
+            word = word.wrapping_add(*summand).wrapping_mul(multiplier) & mask;
+            word ^= word >> half;
+        }
+        word.wrapping_add(self.last) & mask
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hash::hash;
+
+    #[test]
+    fn many_are_permuted_as_one_is() {
+        for count in [
+            1,
+            2,
+            7,
+            16,
+            17,
+            31,
+            32,
+            33,
+            100,
+            1 << 16,
+            (1 << 31) + 1,
+            1 << 32,
+        ] {
+            for key in 0..20 {
+                let words: [u64; CHUNK] =
+                    core::array::from_fn(|lane| hash(key, lane as u64) % count);
+                let numbers = words.map(|word| u32::try_from(word).unwrap());
+                let keys = words.map(|word| hash(9, word));
+
+                let mut same = numbers;
+                Permutation::new(count, key).apply(&mut same);
+                let mut own = numbers;
+                permute_each(&mut own, count, &keys);
+                for lane in 0..CHUNK {
+                    assert_eq!(u64::from(same[lane]), permute(words[lane], count, key));
+                    assert_eq!(
+                        u64::from(own[lane]),
+                        permute(words[lane], count, keys[lane])
+                    );
+                }
+            }
+        }
+    }
+}

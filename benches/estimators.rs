@@ -88,6 +88,7 @@ fn by_hand_in_cells(count: u64) -> [f64; 2] {
 const CELLS: u64 = 8;
 
 type Case = (&'static str, Box<dyn Fn()>);
+type ThreadedCase = (&'static str, Box<dyn Fn() + Sync>);
 
 fn cases() -> Vec<Case> {
     let f = || cube(function);
@@ -245,7 +246,7 @@ fn ratios(rounds: usize) {
 }
 
 /// Estimators that take long enough for the threads to be worth while.
-fn threaded() -> Vec<(&'static str, Box<dyn Fn() + Sync>)> {
+fn threaded() -> Vec<ThreadedCase> {
     const MANY: u64 = 1 << 21;
     let f = || cube(function);
     let sobol = || Sobol::new(DIMENSIONS as u32).expect("five dimensions");

@@ -39,7 +39,9 @@
 //!
 //! - Geometry is in `f32`: coordinates are known to 6e-8 of themselves. Rays leave surfaces by a bound of the rounding
 //!   errors, which scales and moves with the scene; two surfaces nearer to one another than about 1e-6 of
-//!   their coordinates are not told apart. A scene may be of any size between 1e-10 and 1e10.
+//!   their coordinates are not told apart. A scene may be of any size between 1e-11 and 1e11, and as far from the
+//!   origin as 8192 times its size, where its surfaces are known to a 256th of it; an object, 2^21 times. What is
+//!   beyond is [refused](Scene::new). Of shapes that coincide, either may be the one that is seen.
 //! - Colour is linear red, green and blue. No media, no spectra.
 //! - Boxes around many shapes come from the crate `obvhs`; up to 48 shapes are swept over instead. If they are flat and
 //!   scatter light ideally diffusely, and what is around them is constant, many paths are followed at once, with the same
@@ -61,8 +63,10 @@ mod radiance;
 mod ray;
 mod recursive;
 mod render;
+mod resolution;
 mod scene;
 pub mod scenes;
+mod segment;
 pub mod sensor;
 mod shading;
 pub mod shape;
@@ -77,5 +81,6 @@ pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
 pub use recursive::{Direct, Ending, Recursive, RecursivePixel};
 pub use render::{Pixel, Unfinished, View};
-pub use scene::{Instances, Object, Scene, Segment, Vertex};
+pub use scene::{Instances, Object, Scene, Vertex};
+pub use segment::Segment;
 pub use shading::{Detail, Shading};

@@ -32,6 +32,7 @@ pub(in crate::path) struct Geometry {
     search: Search,
     soup: Option<Soup>,
     copies: Option<Copies>,
+    bounds: [Vec3A; 2],
 }
 
 /// How the shapes that a ray meets are found.
@@ -66,7 +67,7 @@ pub(in crate::path) struct Hit {
 const FEW: usize = 48;
 
 /// The smallest box around boxes.
-fn around(boxes: impl Iterator<Item = [Vec3A; 2]>) -> [Vec3A; 2] {
+pub(in crate::path) fn around(boxes: impl Iterator<Item = [Vec3A; 2]>) -> [Vec3A; 2] {
     let nothing = [Vec3A::INFINITY, Vec3A::NEG_INFINITY];
     boxes.fold(nothing, |[low, high], [l, h]| [low.min(l), high.max(h)])
 }
@@ -82,20 +83,24 @@ impl Geometry {
         } else {
             Search::Tree(Tree::new(&shapes))
         };
+        let (soup, copies) = (Soup::new(meshes), Copies::new(copies));
+        let bounds = around(
+            (shapes.iter().map(Shape::bounds))
+                .chain(soup.iter().map(Soup::bounds))
+                .chain(copies.iter().map(Copies::bounds)),
+        );
         Self {
             shapes,
             search,
-            soup: Soup::new(meshes),
-            copies: Copies::new(copies),
+            soup,
+            copies,
+            bounds,
         }
     }
 
     /// The corners of a box around everything.
-    fn bounds(&self) -> [Vec3A; 2] {
-        let shapes = self.shapes.iter().map(Shape::bounds);
-        let soup = self.soup.iter().map(Soup::bounds);
-        let copies = self.copies.iter().map(Copies::bounds);
-        around(shapes.chain(soup).chain(copies))
+    pub(in crate::path) fn bounds(&self) -> [Vec3A; 2] {
+        self.bounds
     }
 
     /// The first shape that the ray meets.

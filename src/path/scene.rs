@@ -6,12 +6,14 @@ use glam::{Affine2, Affine3A, Mat2, Vec3A};
 
 use super::bsdf::{Bsdf, Material};
 use super::color;
-use super::geometry::{Copied, Geometry, Hit};
+use super::geometry::{Copied, Geometry, Hit, around};
 use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment, Picture};
 #[cfg(feature = "simd")]
 use super::packet::{Emitted, Optics, Packet};
-use super::ray::{Ray, Surface, gamma};
-use super::shape::{Mesh, Primitive};
+use super::ray::{Ray, Surface};
+use super::resolution::{check_object, check_scene};
+use super::segment::{End, Segment};
+use super::shape::{Mesh, Primitive, Shape};
 use super::texture::{self, Parameter, Texture};
 use super::{Detail, Shading};
 use crate::Error;
@@ -72,6 +74,12 @@ impl<B> Object<B> {
             meshes: vec![mesh],
             ..Self::new([] as [Primitive; 0], bsdf)
         }
+    }
+
+    /// The corners of a box around everything.
+    fn bounds(&self) -> [Vec3A; 2] {
+        let shapes = self.shapes.iter().map(Shape::bounds);
+        around(shapes.chain(self.meshes.iter().map(Mesh::bounds)))
     }
 
     /// The same, emitting light from the outer sides: `radiance` in linear red, green and blue.
@@ -184,7 +192,8 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
     ///
     /// # Errors
     ///
-    /// [`Error::Refused`] if the lights are of a type for more or fewer of them, and for 2^32 shapes or more.
+    /// [`Error::Refused`] if the lights are of a type for more or fewer of them, for 2^32 shapes or more, and where `f32`
+    /// does not tell points apart: see the limits of [`path`](super).
     pub fn new(objects: Vec<Object<B>>, environment: E) -> Result<Self, Error> {
         Self::with_instances(objects, Vec::new(), environment)
     }
@@ -213,16 +222,21 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
             let start = parts.owners.len();
             let (shapes, meshes) = parts.add(objects)?;
             let group = Arc::new(Geometry::new(shapes, meshes, Vec::new()));
+            check_scene(group.bounds())?;
             for place in places {
-                copies.push(Copied::new(Arc::clone(&group), start, place)?);
+                let copy = Copied::new(Arc::clone(&group), start, place)?;
+                check_object(copy.extent())?;
+                copies.push(copy);
             }
         }
+        let geometry = Geometry::new(shapes, meshes, copies);
+        check_scene(geometry.bounds())?;
         #[cfg_attr(
             not(feature = "simd"),
             expect(unused_mut, reason = "there are no packets")
         )]
         let mut scene = Self {
-            geometry: Geometry::new(shapes, meshes, copies),
+            geometry,
             owners: parts.owners,
             bsdfs: parts.bsdfs,
             lights: L::new(parts.emitters)?,
@@ -287,6 +301,7 @@ impl<B> Parts<B> {
     fn add(&mut self, objects: Vec<Object<B>>) -> Result<(Vec<Primitive>, Vec<Mesh>), Error> {
         let (mut shapes, mut meshes, mut owners_of_meshes) = (Vec::new(), Vec::new(), Vec::new());
         for mut object in objects {
+            check_object(object.bounds())?;
             let bsdf = index(self.bsdfs.len())?;
             self.bsdfs.push(object.bsdf);
             let dark = Owner {
@@ -384,71 +399,9 @@ impl<B, L, E> Scene<B, L, E> {
     /// Whether any shape is in the way.
     #[inline]
     pub fn occluded(&self, segment: &Segment) -> bool {
-        match segment.end {
+        match segment.end() {
             End::Surface => self.geometry.divided(&segment.ray, segment.length),
             End::Open => self.geometry.occluded(&segment.ray, segment.length),
         }
-    }
-}
-
-/// The way from one surface to another, or to what is no surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment {
-    /// The ray from a margin off the one surface.
-    pub ray: Ray,
-    /// How far it is to a margin off the other, less the rounding error of a distance; infinite where there is no other
-    /// end.
-    pub length: f32,
-    end: End,
-}
-
-/// What is at the end of a way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum End {
-    /// A surface of the scene. So the way is inside the scene, where fewer shapes can be in it.
-    Surface,
-    /// Anything else.
-    Open,
-}
-
-impl Segment {
-    /// The way between two surfaces; `None` where they are not told apart.
-    #[inline]
-    pub fn between<D>(here: &Surface<D>, there: &Surface) -> Option<Self> {
-        let toward = there.point - here.point;
-        Self::joining(here.leave(toward), there.leave(-toward), End::Surface)
-    }
-
-    /// The way from a surface to a point off all surfaces; `None` where they are not told apart.
-    #[inline]
-    pub fn to_point<D>(here: &Surface<D>, there: Vec3A) -> Option<Self> {
-        Self::joining(here.leave(there - here.point), there, End::Open)
-    }
-
-    /// The way from a surface in a direction of length 1, without end.
-    #[inline]
-    pub fn along<D>(here: &Surface<D>, direction: Vec3A) -> Self {
-        Self {
-            ray: Ray {
-                origin: here.leave(direction),
-                direction,
-            },
-            length: f32::INFINITY,
-            end: End::Open,
-        }
-    }
-
-    #[inline]
-    fn joining(origin: Vec3A, to: Vec3A, end: End) -> Option<Self> {
-        let way = to - origin;
-        let length = way.length();
-        (length > 0.0).then(|| Self {
-            ray: Ray {
-                origin,
-                direction: way * length.recip(),
-            },
-            length: length * (1.0 - gamma(8)),
-            end,
-        })
     }
 }

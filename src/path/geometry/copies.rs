@@ -87,9 +87,10 @@ impl Copied {
         }
     }
 
-    fn bounds(&self) -> [Vec3A; 2] {
+    /// The corners of the box around the group, and where they are put.
+    fn corners(&self) -> impl Iterator<Item = [Vec3A; 2]> {
         let [low, high] = self.group.bounds();
-        let corners = (0..8).map(|corner| {
+        (0..8).map(move |corner| {
             let pick =
                 |bit: u32, low: f32, high: f32| if corner >> bit & 1 == 0 { low } else { high };
             let corner = Vec3A::new(
@@ -97,12 +98,22 @@ impl Copied {
                 pick(1, low.y, high.y),
                 pick(2, low.z, high.z),
             );
-            let point = self.outward.transform_point3a(corner);
+            [corner, self.outward.transform_point3a(corner)]
+        })
+    }
+
+    /// The corners of a box around the copy, up to rounding.
+    pub(in crate::path) fn extent(&self) -> [Vec3A; 2] {
+        around(self.corners().map(|[_, point]| [point; 2]))
+    }
+
+    /// The corners of a box around the copy.
+    fn bounds(&self) -> [Vec3A; 2] {
+        around(self.corners().map(|[corner, point]| {
             let matrix = self.outward.matrix3.abs();
             let slack = (matrix * corner.abs() + self.outward.translation.abs()) * gamma(16);
             [point - slack, point + slack]
-        });
-        around(corners)
+        }))
     }
 }
 

@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3A};
 
 use super::{Flat, Shape};
 use crate::Error;
+use crate::path::geometry::around;
 use crate::path::{Shading, Surface};
 
 /// Triangles that share vertices, with or without normals and texture coordinates at them.
@@ -110,6 +111,11 @@ impl Mesh {
     /// How many triangles had no area.
     pub fn dropped(&self) -> usize {
         self.dropped
+    }
+
+    /// The corners of a box around all vertices.
+    pub(in crate::path) fn bounds(&self) -> [Vec3A; 2] {
+        around((self.positions.iter()).map(|&position| [Vec3A::from(position); 2]))
     }
 
     /// The triangle as a shape of its own.

@@ -169,9 +169,14 @@ impl Table {
                 coverage.unwrap_or_else(|| "—".into()),
                 or_dash(last.efficiency.map(|e| number::significant(e, 2))).into(),
                 or_dash(
-                    convergence
-                        .points_seconds(last)
-                        .map(|s| number::seconds(s, 2)),
+                    // In a loop of many, an evaluation may take less than it does by itself.
+                    convergence.points_seconds(last).map(|s| {
+                        if s > 0.0 {
+                            number::seconds(s, 2)
+                        } else {
+                            "≈ 0".to_owned()
+                        }
+                    }),
                 )
                 .into(),
             ]);

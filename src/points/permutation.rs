@@ -93,30 +93,16 @@ fn walk_on(numbers: &mut [u32; CHUNK], count: u64, step: impl Fn(usize, u32) -> 
         left += usize::from(u64::from(number) >= count);
     }
     while left > 0 {
-        // Whole vectors of them; what is past the last is computed in vain.
-        let mut images = [0; CHUNK];
-        let vectors = left.div_ceil(VECTOR);
-        let walking = images
-            .chunks_exact_mut(VECTOR)
-            .zip(lanes.chunks_exact(VECTOR));
-        for (images, lanes) in walking.take(vectors) {
-            for (image, &lane) in images.iter_mut().zip(lanes) {
-                *image = step(lane, numbers[lane]);
-            }
-        }
         let mut still = 0;
         for place in 0..left {
-            let (lane, image) = (lanes[place], images[place]);
-            numbers[lane] = image;
+            let lane = lanes[place];
+            numbers[lane] = step(lane, numbers[lane]);
             lanes[still] = lane;
-            still += usize::from(u64::from(image) >= count);
+            still += usize::from(u64::from(numbers[lane]) >= count);
         }
         left = still;
     }
 }
-
-/// Numbers that are taken on together.
-const VECTOR: usize = 16;
 
 /// Of the numbers that a bijection maps.
 #[derive(Clone, Copy)]

@@ -46,7 +46,7 @@
 //!   [`Faure`], are within 2^-51 of the exact fraction, relatively.
 //! - Of [`NRooks`], [`Stratified`] and [`MultiJittered`] the order of the strata is exact for every count, but with more than 2^52
 //!   strata on an axis a point may be rounded into a neighbouring one.
-//! - [`OrthogonalArray`] has 2^48 points at most, [`BlueNoise`] 2^32 for each pixel; [`Independent`] has no structure to lose.
+//! - [`OrthogonalArray`] has about 2^48 points at most, [`BlueNoise`] 2^32 for each pixel; [`Independent`] has no structure to lose.
 //!
 //! # Writing your own
 //!

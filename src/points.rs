@@ -36,6 +36,18 @@
 //!
 //! [`pixel`] has coordinates for renderers, a pure function of pixel, sample, dimension and seed.
 //!
+//! # Past 2^53 points
+//!
+//! A coordinate has 53 binary digits at most, so that more points than that cannot all differ in it. Every index is valid all the
+//! same:
+//!
+//! - [`Sobol`], [`Rescrambled`], [`LatticeSequence`] and [`Kronecker`] are computed in 64 digits and truncated to 53.
+//! - [`VanDerCorput`], [`Lattice`] and the axis of [`Hammersley`] are rounded to the nearest number; [`Halton`], and
+//!   [`Faure`], are within 2^-51 of the exact fraction, relatively.
+//! - Of [`NRooks`], [`Stratified`] and [`MultiJittered`] the order of the strata is exact for every count, but with more than 2^52
+//!   strata on an axis a point may be rounded into a neighbouring one.
+//! - [`OrthogonalArray`] has about 2^48 points at most, [`BlueNoise`] 2^32 for each pixel; [`Independent`] has no structure to lose.
+//!
 //! # Writing your own
 //!
 //! Implement [`PointSet::coordinate`], and keep the laws that [`PointSet`] states; nothing else is needed.

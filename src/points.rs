@@ -150,6 +150,12 @@ pub trait PointSet: Sync {
         None
     }
 
+    /// `Some(b)` if the first points of an endless set are spread evenly where their number is a power of `b`, and less so
+    /// in between; estimates of other numbers of them say so ([`Warning::NoPower`](crate::Warning::NoPower)).
+    fn radix(&self) -> Option<u32> {
+        None
+    }
+
     /// In how many dimensions the set keeps its promise.
     fn dimensions(&self) -> u32 {
         u32::MAX

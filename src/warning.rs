@@ -1,11 +1,12 @@
-//! Why an error bar may be wrong, seen from the values themselves.
+//! Why an error bar may be wrong, or an error larger than it need be.
 
 use core::fmt;
 
 use crate::Value;
+use crate::points::PointSet;
 use crate::tally::Tally;
 
-/// Why an error bar may be wrong.
+/// Why an error bar may be wrong, or an error larger than it need be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -52,6 +53,14 @@ pub enum Warning {
         /// The largest absolute value.
         largest: f64,
     },
+    /// The number of points is no power of the [radix](crate::points::PointSet::radix) of their set, so that they are less
+    /// even than a power would be: the error is larger than it need be. It says nothing against the error bar.
+    NoPower {
+        /// How many points of a set there were.
+        count: u64,
+        /// The radix.
+        radix: u32,
+    },
     /// The iterations of an adaptive estimator contradict one another.
     Inconsistent {
         /// Their chi-square per degree of freedom, which should be near 1.
@@ -90,6 +99,10 @@ impl fmt::Display for Warning {
                 f,
                 "the error bar is below the rounding of values as large as {largest:e}"
             ),
+            Self::NoPower { count, radix } => write!(
+                f,
+                "{count} points are no power of {radix}: a power spreads them more evenly"
+            ),
             Self::Inconsistent { chi_square } => write!(
                 f,
                 "the iterations contradict one another: chi-square per degree of freedom {chi_square:.1}"
@@ -120,6 +133,16 @@ impl Warning {
             size
         });
         (largest > 0.0).then_some(Self::Rounding { largest })
+    }
+
+    /// For the first `count` points of `points`.
+    pub(crate) fn of_power(points: &impl PointSet, count: u64) -> Option<Self> {
+        let radix = points.radix().filter(|_| points.size().is_none())?;
+        let mut rest = count;
+        while rest > 1 && rest.is_multiple_of(u64::from(radix)) {
+            rest /= u64::from(radix);
+        }
+        (rest > 1).then_some(Self::NoPower { count, radix })
     }
 
     pub(crate) fn of_replicates(replicates: u64) -> Option<Self> {

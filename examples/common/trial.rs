@@ -157,6 +157,7 @@ fn name(warning: Warning) -> &'static str {
         Warning::Tied { .. } => "replicates tied",
         Warning::Rejected { .. } => "values rejected",
         Warning::Rounding { .. } => "rounding",
+        Warning::NoPower { .. } => "no power",
         Warning::Inconsistent { .. } => "iterations contradict",
         _ => "another",
     }

@@ -77,10 +77,12 @@ impl<P: PointSet> Tallied for Average<P> {
         let [tally] = tallies else { return None };
         let moments = tally.moments();
         let rejected = tally.rejected();
+        let mut warnings = Warning::of_rejected(rejected);
+        warnings.extend(Warning::of_power(&self.points, tally.used()));
         (moments.count() > 0).then(|| Estimate {
             requested: self.count,
             rejected,
-            warnings: Warning::of_rejected(rejected),
+            warnings,
             ..Estimate::new(moments.mean(), tally.used())
         })
     }

@@ -137,6 +137,8 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Replicated<F> {
         let mut warnings = diagnose(&all, std_error);
         warnings.extend(Warning::of_replicates(moments.count()));
         warnings.extend(Warning::of_rejected(all.rejected()));
+        let set = (self.points)(hash::hash(self.seed, 0));
+        warnings.extend(Warning::of_power(&set, most));
         Some(Estimate {
             std_error,
             error_bar: ErrorBar::Replicates,

@@ -97,6 +97,10 @@ impl<S: DigitScramble> PointSet for Faure<S> {
         self.base.fraction(&self.scramble, key, digits)
     }
 
+    fn radix(&self) -> Option<u32> {
+        Some(self.base())
+    }
+
     fn dimensions(&self) -> u32 {
         self.dimensions
     }

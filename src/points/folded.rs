@@ -53,6 +53,10 @@ impl<P: PointSet> PointSet for Folded<P> {
         self.points.size()
     }
 
+    fn radix(&self) -> Option<u32> {
+        self.points.radix()
+    }
+
     fn dimensions(&self) -> u32 {
         self.points.dimensions()
     }

@@ -254,6 +254,10 @@ impl PointSet for LatticeSequence {
         }
     }
 
+    fn radix(&self) -> Option<u32> {
+        Some(2)
+    }
+
     #[expect(clippy::cast_possible_truncation, reason = "1024 at most")]
     fn dimensions(&self) -> u32 {
         self.vector.len() as u32

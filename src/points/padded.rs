@@ -66,6 +66,11 @@ impl<P: PointSet, Q: PointSet> PointSet for Padded<P, Q> {
         self.first.size().or(self.rest.size())
     }
 
+    /// That of the first set.
+    fn radix(&self) -> Option<u32> {
+        self.first.radix()
+    }
+
     fn dimensions(&self) -> u32 {
         self.dimensions.saturating_add(self.rest.dimensions())
     }

@@ -112,6 +112,10 @@ impl PointSet for Rescrambled {
         unit(self.digits(self.seed, index, dimension))
     }
 
+    fn radix(&self) -> Option<u32> {
+        Some(2)
+    }
+
     fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
         let mut block = Block::new(first, dimensions, out, u32::MAX, 0);
         if block.count() == 0 {

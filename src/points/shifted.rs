@@ -64,6 +64,10 @@ impl<P: PointSet> PointSet for Shifted<P> {
         self.points.size()
     }
 
+    fn radix(&self) -> Option<u32> {
+        self.points.radix()
+    }
+
     fn dimensions(&self) -> u32 {
         self.points.dimensions()
     }

@@ -132,6 +132,10 @@ impl<S: BinaryScramble> PointSet for Sobol<S> {
         unit(self.scramble.scramble(key, multiplied(columns, index)))
     }
 
+    fn radix(&self) -> Option<u32> {
+        Some(2)
+    }
+
     #[expect(clippy::cast_possible_truncation, reason = "21201 at most")]
     fn dimensions(&self) -> u32 {
         self.matrices.len() as u32

@@ -67,6 +67,10 @@ impl PointSet for VanDerCorput {
         radical_inverse(self.base, index)
     }
 
+    fn radix(&self) -> Option<u32> {
+        Some(self.base)
+    }
+
     fn dimensions(&self) -> u32 {
         1
     }

@@ -15,7 +15,8 @@ use super::{Description, SceneError, Sensor, Techniques};
 use crate::Error;
 use crate::path::bsdf::{Lambertian, Material};
 use crate::path::light::{
-    AreaLights, Background, Constant, Environment, Light, NoEnvironment, NoLight, Surroundings,
+    AreaLights, Background, Constant, Environment, Light, LightTree, NoEnvironment, NoLight,
+    Surroundings,
 };
 use crate::path::sensor::{self, Camera, Orthographic, Pinhole, ThinLens};
 use crate::path::texture::{Texture, Uniform};
@@ -23,7 +24,7 @@ use crate::path::{Instances, Object, Paths, Scene, View};
 use filter::AnyFilter;
 use geometry::{Pieces, Solid};
 use material::{Images, Make, Value};
-use needs::Needs;
+use needs::{Lights, Needs};
 
 /// Which type a scene is loaded as.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -112,20 +113,22 @@ impl Plan<'_> {
         let sources = core::mem::take(&mut self.sources);
         let background = core::mem::replace(&mut self.background, Background::None);
         let refused = |e: Error| self.description.place.error(e);
-        if self.needs.surroundings {
+        // Next to a tree, surroundings that are none cost nothing to speak of.
+        if self.needs.surroundings || self.needs.lights == Lights::Many {
             let surroundings = Surroundings::new(sources, background).map_err(refused)?;
-            return match self.needs.area_lights {
-                true => self.view::<B, AreaLights, _>(surroundings),
-                false => self.view::<B, NoLight, _>(surroundings),
+            return match self.needs.lights {
+                Lights::None => self.view::<B, NoLight, _>(surroundings),
+                Lights::Few => self.view::<B, AreaLights, _>(surroundings),
+                Lights::Many => self.view::<B, LightTree, _>(surroundings),
             };
         }
-        match (background, self.needs.area_lights) {
-            (Background::Constant(constant), true) => {
-                self.view::<B, AreaLights, Constant>(constant)
+        match (background, self.needs.lights) {
+            (Background::Constant(constant), Lights::None) => {
+                self.view::<B, NoLight, Constant>(constant)
             }
-            (Background::Constant(constant), false) => self.view::<B, NoLight, Constant>(constant),
-            (_, true) => self.view::<B, AreaLights, _>(NoEnvironment),
-            (_, false) => self.view::<B, NoLight, _>(NoEnvironment),
+            (Background::Constant(constant), _) => self.view::<B, AreaLights, Constant>(constant),
+            (_, Lights::None) => self.view::<B, NoLight, _>(NoEnvironment),
+            (_, _) => self.view::<B, AreaLights, _>(NoEnvironment),
         }
     }
 

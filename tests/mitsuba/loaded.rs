@@ -131,6 +131,50 @@ fn the_smallest_instance_gives_the_picture_of_the_general_one() {
     }
 }
 
+/// Twenty-four lamps above a ball, without and with a sky: the smallest type draws them by a tree, the general one by
+/// their power. The same test as above for 2 scenes of 3 channels: 4e-6. The tree has the smaller
+/// errors.
+#[test]
+fn many_lights_give_the_same_picture_by_a_tree_as_by_power() {
+    let mut lamps: String = (0..24)
+        .map(|lamp| {
+            let (x, z) = (f64::from(lamp % 6) - 2.5, f64::from(lamp / 6) - 1.5);
+            format!(
+                r#"<shape type="rectangle"><transform name="to_world"><scale value="0.1"/><rotate x="1" angle="90"/>
+                <translate x="{x}" y="2" z="{z}"/></transform><emitter type="area"><rgb name="radiance"
+                value="{} 4 2"/></emitter></shape>"#,
+                1 + lamp % 5 * 10
+            )
+        })
+        .collect();
+    let ground = format!(
+        r#"<shape type="rectangle"><transform name="to_world"><rotate x="1" angle="-90"/><scale value="20"/>
+        <translate y="-1"/></transform>{WHITE}</shape>"#
+    );
+    let around = r#"<emitter type="constant"><rgb name="radiance" value="0.01"/></emitter>"#;
+    for extra in ["", around] {
+        lamps.push_str(extra);
+        let scene = format!(r#"<shape type="sphere">{WHITE}</shape>{ground}{lamps}"#);
+        let [tree, power] = [Instance::Smallest, Instance::General].map(|it| see(&scene, it));
+        let variance = tree.std_error * tree.std_error + power.std_error * power.std_error;
+        let off = (tree.mean - power.mean).abs();
+        assert!(
+            off.cmple(5.0 * variance.map(f64::sqrt)).all(),
+            "{} {}",
+            tree.mean,
+            power.mean
+        );
+        assert!(tree.std_error.y < power.std_error.y);
+        let parts = tree.left_out.join(", ");
+        assert!(!parts.contains("shapes that emit light"), "{parts}");
+        assert_eq!(
+            parts.contains("an environment"),
+            extra.is_empty(),
+            "{parts}"
+        );
+    }
+}
+
 /// A diffuse ball in a constant environment: two coordinates for the film, and where a path hits the ball two for its next
 /// direction, which leaves.
 #[test]

@@ -54,6 +54,14 @@ impl Body {
         matches!(self, Self::Smooth(_))
     }
 
+    /// How many shapes it is.
+    pub(super) fn count(&self) -> usize {
+        match self {
+            Self::Shapes(shapes) => shapes.len(),
+            Self::Smooth(mesh) | Self::Faceted(mesh) => mesh.triangles().len(),
+        }
+    }
+
     pub(super) fn object<B>(self, bsdf: B) -> Object<B> {
         match self {
             Self::Shapes(shapes) => Object::new(shapes, bsdf),

@@ -16,7 +16,7 @@ pub(super) struct Needs {
     /// Other laws of scattering than the ideally diffuse one.
     pub(super) materials: bool,
     /// Shapes that emit light.
-    pub(super) area_lights: bool,
+    pub(super) lights: Lights,
     /// Lights without size, or a picture of the sky.
     pub(super) surroundings: bool,
     /// The same light from everywhere.
@@ -26,12 +26,41 @@ pub(super) struct Needs {
     pub(super) instances: bool,
 }
 
+/// How many shapes emit light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Lights {
+    None,
+    /// They are chosen by their power.
+    Few,
+    /// They are chosen by what they do for the surface at hand.
+    Many,
+}
+
+/// From so many lights on they are chosen by a [tree](crate::path::light::LightTree). What decides is less their number than how
+/// far they are from one another: see there what it gains and costs.
+const MANY: usize = 20;
+
+impl Lights {
+    /// Of a mesh every triangle is a light. Nothing that is copied shines.
+    fn of(pieces: &Pieces<'_>) -> Self {
+        let shining = pieces
+            .solids
+            .iter()
+            .filter(|solid| solid.radiance.is_some());
+        match shining.map(|solid| solid.surface.count()).sum() {
+            0 => Self::None,
+            1..MANY => Self::Few,
+            _ => Self::Many,
+        }
+    }
+}
+
 impl Needs {
-    /// Everything.
+    /// Everything; any number of lights can be chosen by their power.
     pub(super) const ALL: Self = Self {
         shading: true,
         materials: true,
-        area_lights: true,
+        lights: Lights::Few,
         surroundings: true,
         constant: true,
         camera: true,
@@ -52,7 +81,7 @@ impl Needs {
         Self {
             shading: solids().any(|solid| solid.surface.is_smooth() || varies(&solid.shape.bsdf)),
             materials: !solids().all(|solid| is_lambertian(&solid.shape.bsdf)),
-            area_lights: solids().any(|solid| solid.radiance.is_some()),
+            lights: Lights::of(pieces),
             surroundings: is_sky || !surroundings.sources.is_empty(),
             constant: matches!(surroundings.background, Background::Constant(_)),
             camera: !matches!(sensor.projection, Projection::Perspective { .. })
@@ -67,7 +96,7 @@ impl Needs {
         [
             (self.shading, "textures and interpolated normals"),
             (materials, "laws of scattering other than the diffuse one"),
-            (self.area_lights, "shapes that emit light"),
+            (self.lights != Lights::None, "shapes that emit light"),
             (self.surroundings, "lights without size and skies"),
             (self.surroundings || self.constant, "an environment"),
             (self.camera, "lens, orthographic camera and wide filters"),

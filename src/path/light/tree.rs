@@ -14,8 +14,10 @@ use crate::{Error, Sampler};
 ///
 /// A tree over the emitters bounds for each group where it is, which way it shines and how much; from the root
 /// down, one of two branches is taken in proportion to the bound of its irradiance.[^conty] Where
-/// [`AreaLights`](super::AreaLights) draw a bright light far away or one that faces elsewhere, this draws one that is seen:
-/// it takes longer and pays from some ten lights on.
+/// [`AreaLights`](super::AreaLights) draw a bright light far away or one that faces elsewhere, this draws one that is seen.
+/// It takes longer, and pays where lights are far from one another: small lamps in a hall eight times as long as wide
+/// and high had 1.6 to 2.2 times the efficiency, one over relative mean square error and time, with 5 to 40 of them,
+/// 1.3 to 1.4 with 100 and 0.9 with 2; in a cube of a room 0.9 to 1.2 with up to 10, and 0.8 with 20 to 100.
 ///
 /// Two coordinates draw a point, however many emitters there are.
 ///

@@ -6,6 +6,7 @@ use std::time::Instant;
 use rand::rngs::Xoshiro256PlusPlus;
 
 use super::monte_carlo::Streams;
+use crate::block::smaller;
 use crate::evaluate::{Source, Tail, Visit, Wide, evaluate};
 use crate::stratum::{Stratified, Stratum, apportion};
 use crate::tally::Tally;
@@ -247,15 +248,64 @@ struct Confined<'a, S> {
     left: &'a [f64],
 }
 
+impl<S> Confined<'_, S> {
+    /// A coordinate of the whole axis moved to the `place`-th of its cells.
+    #[inline]
+    fn confine(&self, u: f64, place: f64) -> f64 {
+        const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
+        smaller((place + u) / self.cells, ALMOST_ONE)
+    }
+}
+
 impl<S: Sampler> Sampler for Confined<'_, S> {
     #[inline]
     fn next_1d(&mut self) -> f64 {
-        const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
         let u = self.inner.next_1d();
-        let Some((place, left)) = self.left.split_first() else {
+        let Some((&place, left)) = self.left.split_first() else {
             return u;
         };
         self.left = left;
-        ((place + u) / self.cells).min(ALMOST_ONE)
+        self.confine(u, place)
+    }
+
+    /// Draws first and confines then, several at once.
+    #[inline]
+    fn next_nd(&mut self, out: &mut [f64]) {
+        self.inner.next_nd(out);
+        let (here, left) = self.left.split_at(out.len().min(self.left.len()));
+        self.left = left;
+        for (u, &place) in out.iter_mut().zip(here) {
+            *u = self.confine(*u, place);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Cursor;
+    use crate::points::Independent;
+
+    #[test]
+    fn coordinates_are_the_same_one_by_one_and_at_once() {
+        let points = Independent::new(5);
+        let corner = [2.0, 0.0, 6.0];
+        let confined = |index| Confined {
+            inner: Cursor::new(&points, index),
+            cells: 7.0,
+            corner: &corner,
+            left: &corner,
+        };
+        for index in 0..100 {
+            let (mut singly, mut together) = (confined(index), confined(index));
+            let mut out = [0.0; 5];
+            // Within the confined axes, across their end, and past it.
+            let (first, rest) = out.split_at_mut(2);
+            together.next_nd(first);
+            together.next_nd(rest);
+            assert_eq!(out, core::array::from_fn(|_| singly.next_1d()));
+            assert_eq!(together.next_1d(), singly.next_1d());
+            assert!((2.0 / 7.0..3.0 / 7.0).contains(&out[0]) && (6.0 / 7.0..1.0).contains(&out[2]));
+        }
     }
 }

@@ -107,10 +107,10 @@ fn shoot(
         Ok((image, start.elapsed().as_secs_f64()))
     };
     let seed = |run| hash::hash(report.seed, run);
-    // Two guesses of how many samples fill the time, the second from a quarter of it.
+    // Guesses of how many samples fill the time: the second from a quarter of it, the last from all of it.
     let mut spp = 4;
     clocked(spp, seed(100))?;
-    for share in [0.25, 1.0] {
+    for share in [0.25, 1.0, 1.0] {
         let (_, took) = clocked(spp, seed(101))?;
         #[expect(
             clippy::cast_possible_truncation,

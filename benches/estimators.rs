@@ -19,7 +19,7 @@ use criterion::{Criterion, Throughput};
 use estimand::estimators::{Bounded, Strata, Vegas};
 use estimand::hash::hash;
 use estimand::integrands::Roulette;
-use estimand::points::{HashedOwen, PointSet, Sobol};
+use estimand::points::{HashedOwen, Independent, LinearMatrix, PointSet, Sobol};
 use estimand::{Average, Estimator, MonteCarlo, Replicated, Sampler, Stream, cube};
 use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
 
@@ -66,12 +66,12 @@ fn by_hand_on(points: &impl PointSet, count: u64) -> [f64; 2] {
 fn by_hand_in_cells(count: u64) -> [f64; 2] {
     let cells = CELLS.pow(3);
     let each = count / cells;
+    let mut ahead = Ahead::new(Independent::new(1));
     let (mut mean, mut variance) = (0.0, 0.0);
     for cell in 0..cells {
         let corner = [cell, cell / CELLS, cell / CELLS / CELLS].map(|place| (place % CELLS) as f64);
-        let mut stream = Stream(Xoshiro256PlusPlus::seed_from_u64(hash(1, cell)));
-        let [here, error] = by_hand(each, |_| {
-            let mut x: [f64; DIMENSIONS] = std::array::from_fn(|_| stream.next_1d());
+        let [here, error] = by_hand(each, |index| {
+            let mut x = ahead.point(cell * each + index);
             for (x, place) in x.iter_mut().zip(corner) {
                 *x = (place + *x) / CELLS as f64;
             }
@@ -82,6 +82,104 @@ fn by_hand_in_cells(count: u64) -> [f64; 2] {
     }
     let cells = cells as f64;
     [mean / cells, variance.sqrt() / cells]
+}
+
+/// The points of a set in the order of their indices, computed ahead.
+struct Ahead<P> {
+    points: P,
+    room: Vec<f64>,
+}
+
+impl<P: PointSet> Ahead<P> {
+    const ROWS: usize = 256;
+
+    fn new(points: P) -> Self {
+        let room = vec![0.0; Self::ROWS * DIMENSIONS];
+        Self { points, room }
+    }
+
+    #[inline]
+    fn point(&mut self, index: u64) -> [f64; DIMENSIONS] {
+        let row = index as usize % Self::ROWS;
+        if row == 0 {
+            self.points
+                .fill(index, 0..DIMENSIONS as u32, &mut self.room);
+        }
+        let x = &self.room[row * DIMENSIONS..][..DIMENSIONS];
+        x.try_into().expect("five coordinates")
+    }
+}
+
+/// VEGAS by hand, as far as its loop goes: bins and strata as the library has them for this count, but as many points in
+/// each stratum.
+fn vegas_by_hand(count: u64) -> [f64; 2] {
+    const BINS: usize = 161;
+    const SIDE: u64 = 5;
+    const ITERATIONS: u64 = 10;
+    let strata = SIDE.pow(5);
+    let each = count / ITERATIONS / strata;
+    let mut ends = [[0.0; BINS + 1]; DIMENSIONS];
+    for axis in &mut ends {
+        for (place, end) in axis.iter_mut().enumerate() {
+            *end = place as f64 / BINS as f64;
+        }
+    }
+    let (mut all, mut variance) = (0.0, 0.0);
+    for iteration in 0..ITERATIONS {
+        let mut squares = [[0.0; BINS]; DIMENSIONS];
+        let mut hits = [[0.0; BINS]; DIMENSIONS];
+        let mut ahead = Ahead::new(Independent::new(hash(1, iteration)));
+        let (mut mean, mut errors) = (0.0, 0.0);
+        for stratum in 0..strata {
+            let mut rest = stratum;
+            let corner: [f64; DIMENSIONS] = std::array::from_fn(|_| {
+                let place = rest % SIDE;
+                rest /= SIDE;
+                place as f64
+            });
+            let [here, error] = by_hand(each, |index| {
+                let mut x = ahead.point(stratum * each + index);
+                let mut bins = [0; DIMENSIONS];
+                let mut jacobian = 1.0;
+                for axis in 0..DIMENSIONS {
+                    let scaled = (corner[axis] + x[axis]) * (BINS as f64 / SIDE as f64);
+                    let bin = (scaled as usize).min(BINS - 1);
+                    let width = ends[axis][bin + 1] - ends[axis][bin];
+                    x[axis] = ends[axis][bin] + (scaled - bin as f64) * width;
+                    jacobian *= width * BINS as f64;
+                    bins[axis] = bin;
+                }
+                let value = jacobian * function(x);
+                for (axis, bin) in bins.into_iter().enumerate() {
+                    squares[axis][bin] += value * value;
+                    hits[axis][bin] += 1.0;
+                }
+                value
+            });
+            mean += here;
+            errors += error * error;
+        }
+        all += mean / strata as f64;
+        variance += errors / (strata * strata) as f64;
+        for ((ends, squares), hits) in ends.iter_mut().zip(&squares).zip(&hits) {
+            let weights: [f64; BINS] =
+                std::array::from_fn(|bin| (squares[bin] / f64::max(hits[bin], 1.0)).powf(0.25));
+            let share = weights.iter().sum::<f64>() / BINS as f64;
+            let old = *ends;
+            let (mut bin, mut before) = (0, 0.0);
+            for (place, end) in ends.iter_mut().enumerate().take(BINS).skip(1) {
+                let target = share * place as f64;
+                while bin < BINS - 1 && before + weights[bin] < target {
+                    before += weights[bin];
+                    bin += 1;
+                }
+                let within = ((target - before) / weights[bin]).clamp(0.0, 1.0);
+                *end = old[bin] + within * (old[bin + 1] - old[bin]);
+            }
+        }
+    }
+    let iterations = ITERATIONS as f64;
+    [all / iterations, variance.sqrt() / iterations]
 }
 
 /// Cells along an axis of the grid of `Strata`.
@@ -136,6 +234,29 @@ fn cases() -> Vec<Case> {
             }),
         ),
         (
+            "median/by_hand",
+            Box::new(move || {
+                let mut means: Vec<f64> = (0..15)
+                    .map(|replicate| {
+                        let matrix = LinearMatrix {
+                            seed: hash(0, replicate),
+                        };
+                        by_hand_on(&sobol().scrambled(matrix), COUNT / 16)[0]
+                    })
+                    .collect();
+                means.sort_by(f64::total_cmp);
+                black_box(means);
+            }),
+        ),
+        (
+            "median/library",
+            Box::new(move || {
+                let linear = |seed| sobol().scrambled(LinearMatrix { seed });
+                let median = Replicated::new(15, COUNT / 16, linear).median();
+                drop(black_box(median.estimate(&f())));
+            }),
+        ),
+        (
             "roulette/by_hand",
             Box::new(|| {
                 let mut stream = Stream(Xoshiro256PlusPlus::seed_from_u64(1));
@@ -169,6 +290,19 @@ fn cases() -> Vec<Case> {
             }),
         ),
         (
+            "bounded/by_hand",
+            Box::new(|| {
+                let mut stream = Stream(Xoshiro256PlusPlus::seed_from_u64(1));
+                let mut within = true;
+                black_box(by_hand(COUNT, |_| {
+                    let value = function(std::array::from_fn(|_| stream.next_1d()));
+                    within &= (0.0..=1.0).contains(&value);
+                    value
+                }));
+                black_box(within);
+            }),
+        ),
+        (
             "bounded/library",
             Box::new(move || {
                 let bounded = Bounded::new(COUNT, 1, 0.0, 1.0).expect("bounds");
@@ -180,6 +314,12 @@ fn cases() -> Vec<Case> {
             Box::new(move || {
                 let strata = Strata::new(CELLS, 3, COUNT, 1).expect("valid").neyman();
                 drop(black_box(strata.estimate(&f())));
+            }),
+        ),
+        (
+            "vegas/by_hand",
+            Box::new(|| {
+                black_box(vegas_by_hand(COUNT));
             }),
         ),
         (

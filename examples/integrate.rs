@@ -112,17 +112,20 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
     let mut problem = Problem::new(arguments.integrand, arguments.dims);
-    for (given, place) in [
-        (arguments.a, &mut problem.a),
-        (arguments.u, &mut problem.u),
-        (arguments.width, &mut problem.width),
+    for (name, given, place) in [
+        ("a", arguments.a, &mut problem.a),
+        ("u", arguments.u, &mut problem.u),
+        ("width", arguments.width, &mut problem.width),
     ] {
         if let Some(given) = given {
             if !given.is_finite() {
-                return Err(Error::refused("parameter of the integrand", "finite", given).into());
+                return Err(Error::refused(name, "finite", given).into());
             }
             *place = given;
         }
+    }
+    if problem.width <= 0.0 {
+        return Err(Error::refused("width", "above zero", problem.width).into());
     }
     let rule = if arguments.reject {
         NonFinite::Reject
@@ -134,14 +137,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
             let plain = MonteCarlo::new(arguments.count, arguments.seed).non_finite(rule);
             stopped(arguments, plain, &problem)?
         }
-        Points::Vegas if arguments.reject => {
-            return Err(
-                "vegas stops at values that are not finite: it cannot leave them out".into(),
-            );
-        }
         Points::Vegas => {
             let vegas = Vegas::new(problem.dims, arguments.count, arguments.seed)?;
-            stopped(arguments, vegas, &problem)?
+            stopped(arguments, vegas.non_finite(rule), &problem)?
         }
         Points::Set(set) => {
             let count = (arguments.count / arguments.replicates).max(1);

@@ -43,11 +43,18 @@ struct Arguments {
     #[arg(long, default_value_t = 1 << 20, value_parser = clap::value_parser!(u64).range(1024..))]
     count: u64,
     /// An error that is small enough
-    #[arg(long, default_value_t = 5e-6)]
+    #[arg(long, default_value_t = 5e-6, value_parser = error)]
     enough: f64,
     /// Write the result as JSON to a file, or to standard output for `-`
     #[arg(long, value_name = "FILE")]
     json: Option<String>,
+}
+
+fn error(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(error) if error >= 0.0 => Ok(error),
+        _ => Err("not a number that is 0 or more".to_owned()),
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -264,7 +271,10 @@ fn measure<I: Integrand<Value = f64>>(
             if error < arguments.enough {
                 break;
             }
-            count *= 4;
+            let Some(next) = count.checked_mul(4) else {
+                break;
+            };
+            count = next;
         }
     }
     bar.finish_and_clear();

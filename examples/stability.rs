@@ -35,7 +35,7 @@ struct Arguments {
     /// Evaluations of the longest run
     #[arg(long, default_value_t = 1_000_000_000)]
     longest: u64,
-    /// Also write the table as JSON
+    /// Also write the table as JSON to a file, or nothing but that to standard output for `-`
     #[arg(long, value_name = "FILE")]
     json: Option<String>,
 }
@@ -51,13 +51,19 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
+    let only_json = arguments.json.as_deref() == Some("-");
+    let show = |text: &str| {
+        if !only_json {
+            println!("{text}");
+        }
+    };
     let cases = stiff::cases();
     let bar = ProgressBar::with_draw_target(Some(cases.len() as u64), ProgressDrawTarget::stderr());
     bar.set_style(ProgressStyle::with_template(
         "{wide_bar} {pos}/{len} {msg}",
     )?);
-    println!("# Stiff and extreme integrands\n");
-    println!(
+    show("# Stiff and extreme integrands\n");
+    show(&format!(
         "{} runs of about {} evaluations of every method; in 100 dimensions a fifth of that, in 1000 a twenty-fifth. *error*: root mean \
          square error, *claimed*: mean half width of the 95 % intervals, both relative to the integral (absolute where it is \
          zero). *covered*: part of the runs whose interval holds the integral. *warned*: part of the runs with a warning, \
@@ -65,12 +71,10 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
          number of runs, which is 90 % of 200; *instead* names the one of the others with the smallest \
          error, of those without warnings if there are any, or what to do about the integrand where all fail.\n",
         arguments.runs, arguments.count
-    );
-    println!(
-        "Made by `cargo run --release --all-features --example stability > docs/stability.md`.\n"
-    );
-    println!("| integrand | method | error | claimed | covered | warned | time (ms) | instead |");
-    println!("|---|---|---:|---:|---:|---|---:|---|");
+    ));
+    show("Made by `cargo run --release --all-features --example stability > docs/stability.md`.\n");
+    show("| integrand | method | error | claimed | covered | warned | time (ms) | instead |");
+    show("|---|---|---:|---:|---:|---|---:|---|");
     let mut table = Vec::new();
     let (mut failing, mut silent) = (0, 0);
     for case in &cases {
@@ -93,7 +97,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
             let warned = row.warning.map_or_else(String::new, |warning| {
                 format!("{:.0} %: {warning}", 100.0 * row.warned)
             });
-            println!(
+            show(&format!(
                 "| {} | {} | {:.1e} | {:.1e} | {:.3} | {warned} | {:.2} | {instead} |",
                 case.name,
                 row.method.name(),
@@ -101,7 +105,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
                 row.width,
                 row.covered,
                 1e3 * row.seconds
-            );
+            ));
             table.push(json!({
                 "integrand": case.name, "dims": case.dims, "method": row.method.name(), "error": row.error,
                 "claimed": row.width, "covered": row.covered, "warned": row.warned,
@@ -111,17 +115,18 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
         bar.inc(1);
     }
     bar.finish_and_clear();
-    println!(
+    show(&format!(
         "\nOf {} rows {failing} fail. Of those, {silent} do so in silence: with a warning in less than 95 % of the runs, and with \
          too few of the runs without one holding the integral.",
         table.len()
-    );
-    let single = single(arguments.longest)?;
+    ));
+    let single = single(arguments.longest, &show)?;
     if let Some(file) = &arguments.json {
-        fs::write(
-            file,
-            serde_json::to_string_pretty(&json!({ "rows": table, "single": single }))?,
-        )?;
+        let text = serde_json::to_string_pretty(&json!({ "rows": table, "single": single }))?;
+        match file.as_str() {
+            "-" => println!("{text}"),
+            file => fs::write(file, text)?,
+        }
     }
     Ok(())
 }
@@ -141,11 +146,11 @@ fn trials(arguments: &Arguments, case: &Case) -> Result<Vec<Trial>, Error> {
 }
 
 /// What is no matter of statistics: counts, scales in one vector, deep roulette, single bad values.
-fn single(longest: u64) -> Result<Vec<Value>, Box<dyn std::error::Error>> {
-    println!("\n## One run each\n\n| case | outcome |\n|---|---|");
+fn single(longest: u64, show: &dyn Fn(&str)) -> Result<Vec<Value>, Box<dyn std::error::Error>> {
+    show("\n## One run each\n\n| case | outcome |\n|---|---|");
     let mut table = Vec::new();
     let mut say = |case: &str, outcome: String| {
-        println!("| {case} | {outcome} |");
+        show(&format!("| {case} | {outcome} |"));
         table.push(json!({ "case": case, "outcome": outcome }));
     };
     let square = cube(|[x]| x * x);

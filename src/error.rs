@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::Estimate;
+use crate::{Estimate, Value};
 
 /// What was refused, with the offending value.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +58,20 @@ impl Error {
     }
 }
 
+impl Error {
+    /// A value that is not finite, of the point `index`.
+    pub(crate) fn of_value<V: Value>(index: u64, coordinates: Vec<f64>, value: V) -> Self {
+        let mut components = Vec::new();
+        value.for_each(|component| components.push(component));
+        Self::NonFinite {
+            index,
+            replicate: 0,
+            coordinates,
+            value: components,
+        }
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -107,7 +121,7 @@ pub struct Incomplete<V> {
     /// Why it stopped.
     pub reason: Error,
     /// The estimate from the points before the one that stopped it, in the order of their indices; of replicates, from those
-    /// that were complete, if any was. `None` if there were none.
+    /// that were complete, if any was; of strata, from those that were visited. `None` if there were none.
     pub so_far: Option<Box<Estimate<V>>>,
 }
 

@@ -30,7 +30,7 @@ pub use bounded::Bounded;
 pub use median::Median;
 pub use monte_carlo::MonteCarlo;
 pub use replicated::Replicated;
-pub use strata::Strata;
+pub use strata::{Strata, StrataState};
 pub use until::{Progress, Until};
 pub use vegas::{Adapted, Iteration, Vegas, VegasState};
 

@@ -5,6 +5,7 @@ use core::ops::{ControlFlow, Range};
 
 use crate::block::Block;
 use crate::points::PointSet;
+use crate::recorder::Recorder;
 use crate::tally::{Open, Piece, Tally};
 use crate::{Cursor, Error, Integrand, NonFinite, Sampler, Value, reduce};
 
@@ -327,19 +328,5 @@ impl<I: Integrand> Visit for Careful<'_, I> {
         at: impl Fn(u64) -> S,
     ) -> ControlFlow<()> {
         indices.try_for_each(|index| self.point(index, at(index)))
-    }
-}
-
-/// Remembers the coordinates that were read.
-struct Recorder<'a, S> {
-    inner: S,
-    coordinates: &'a mut Vec<f64>,
-}
-
-impl<S: Sampler> Sampler for Recorder<'_, S> {
-    fn next_1d(&mut self) -> f64 {
-        let coordinate = self.inner.next_1d();
-        self.coordinates.push(coordinate);
-        coordinate
     }
 }

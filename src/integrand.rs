@@ -155,9 +155,7 @@ impl<const D: usize, V: Value, F: Fn([f64; D]) -> V + Sync> Integrand for Cube<D
 
     #[inline]
     fn evaluate<S: Sampler>(&self, u: &mut S) -> V {
-        let mut point = [0.0; D];
-        u.next_nd(&mut point);
-        (self.function)(point)
+        (self.function)(u.next_array())
     }
 
     #[expect(

@@ -109,6 +109,7 @@ mod integrand;
 mod moments;
 mod progressive;
 mod quantile;
+mod recorder;
 mod reduce;
 mod sampler;
 mod stratum;

@@ -1,7 +1,9 @@
 //! Estimates that grow: stopped, saved and gone on with, to the same bits.
 
+use std::time::Instant;
+
 use crate::evaluate::Wide;
-use crate::{Error, Estimate, Estimator, Integrand, Value};
+use crate::{Error, Estimate, Estimator, Incomplete, Integrand, Outcome, Value};
 
 /// An estimator whose work can be interrupted and gone on with.
 ///
@@ -91,5 +93,29 @@ pub trait Progressive: Estimator {
         Self: Sized,
     {
         crate::estimators::Until::new(self)
+    }
+}
+
+/// The complete estimate of an estimator that grows.
+pub(crate) fn at_once<E: Progressive, I: Integrand>(
+    estimator: &E,
+    integrand: &I,
+) -> Outcome<I::Value> {
+    let clock = Instant::now();
+    let mut state = estimator.start()?;
+    let outcome = estimator.grow(&mut state, integrand, u64::MAX);
+    let estimate = estimator.conclude(&state).map(|estimate| Estimate {
+        seconds: clock.elapsed().as_secs_f64(),
+        ..estimate
+    });
+    match outcome {
+        Ok(()) => estimate.ok_or_else(|| {
+            let rejected = estimator.used(&state);
+            Error::NothingLeft { rejected }.into()
+        }),
+        Err(reason) => Err(Incomplete {
+            reason,
+            so_far: estimate.map(Box::new),
+        }),
     }
 }

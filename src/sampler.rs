@@ -41,6 +41,17 @@ pub trait Sampler {
             *coordinate = self.next_1d();
         }
     }
+
+    /// The next coordinates, each in `[0, 1)`: the same as an array, which a machine keeps in its registers.
+    #[inline]
+    fn next_array<const N: usize>(&mut self) -> [f64; N]
+    where
+        Self: Sized,
+    {
+        let mut coordinates = [0.0; N];
+        self.next_nd(&mut coordinates);
+        coordinates
+    }
 }
 
 impl<S: Sampler + ?Sized> Sampler for &mut S {
@@ -95,6 +106,18 @@ impl<'a, P: PointSet + ?Sized> Cursor<'a, P> {
         }
     }
 
+    /// The same for a prefix of `width` coordinates.
+    #[inline]
+    pub(crate) fn with_row(points: &'a P, index: u64, row: &'a [f64], width: u32) -> Self {
+        debug_assert_eq!(row.len(), width as usize);
+        Self {
+            points,
+            index,
+            ahead: row.iter(),
+            dimension: width,
+        }
+    }
+
     /// The dimension that the next coordinate will be read from, which is the number read so far.
     pub fn dimension(&self) -> u32 {
         // As many as were counted in at the beginning.
@@ -138,6 +161,18 @@ impl<P: PointSet + ?Sized> Sampler for Cursor<'_, P> {
                 self.ahead = ahead.iter();
             }
             None => out.fill_with(|| self.next_1d()),
+        }
+    }
+
+    /// By value: through memory, what is read would straddle what was written just before, and wait for it.
+    #[inline]
+    fn next_array<const N: usize>(&mut self) -> [f64; N] {
+        match self.ahead.as_slice().split_first_chunk() {
+            Some((&here, ahead)) => {
+                self.ahead = ahead.iter();
+                here
+            }
+            None => core::array::from_fn(|_| self.next_1d()),
         }
     }
 }
@@ -200,5 +235,11 @@ mod tests {
             assert_eq!(plain.next_1d(), ahead.next_1d());
         }
         assert_eq!(ahead.dimension(), 8);
+        // Within the prefix, across its end, and past it.
+        let (mut plain, mut ahead) = (points.point(9), Cursor::with_prefix(&points, 9, &prefix));
+        for _ in 0..3 {
+            assert_eq!(plain.next_array::<3>(), ahead.next_array::<3>());
+        }
+        assert_eq!(ahead.dimension(), 9);
     }
 }

@@ -1,8 +1,15 @@
-//! What strata of equal weight say together: mean, error, and how far the error can be trusted.
+//! Strata of equal weight: what their points have given, and how points are shared out among them.
 
-use crate::tally::Tally;
-use crate::warning::Warning;
+use std::collections::BTreeMap;
+
+use crate::block::Block;
 use crate::{Moments, Value};
+
+mod together;
+mod walk;
+
+pub(crate) use together::Stratified;
+pub(crate) use walk::{Look, Rows, Visitor, Walk};
 
 /// What the points of a stratum have given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,16 +27,35 @@ impl<V: Value> Stratum<V> {
         high: V::ZERO,
     };
 
-    /// What a closed tally has given.
-    pub(crate) fn of(tally: &Tally<V>) -> Self {
-        Self {
-            moments: *tally.moments(),
-            low: tally
-                .lowest()
-                .first()
-                .map_or(V::ZERO, |low| -> V { low.map(|low| -low) }),
-            high: tally.highest().first().copied().unwrap_or(V::ZERO),
-        }
+    /// What `values`, all of them finite, have given.
+    pub(crate) fn of(values: &[V]) -> Self {
+        Self::sums(values).unwrap_or_else(|| {
+            let first = values.first().copied().unwrap_or(V::ZERO);
+            Self {
+                moments: values.iter().copied().collect(),
+                low: values.iter().fold(first, |low, x| low.zip(*x, f64::min)),
+                high: values.iter().fold(first, |high, x| high.zip(*x, f64::max)),
+            }
+        })
+    }
+
+    /// The same of any values in plain arithmetic; `None` where that does not do, as for values that are not finite.
+    #[inline]
+    pub(crate) fn sums(values: &[V]) -> Option<Self> {
+        let mut block = Block::EMPTY;
+        block.extend(values, |value| value);
+        let piece = block.piece()?;
+        Some(Self {
+            moments: piece.moments,
+            low: piece.low,
+            high: piece.high,
+        })
+    }
+
+    /// The largest absolute value, per component.
+    pub(crate) fn size(&self) -> V {
+        self.low
+            .zip(self.high, |low, high| low.abs().max(high.abs()))
     }
 
     pub(crate) fn merge(&mut self, other: &Self) {
@@ -40,6 +66,50 @@ impl<V: Value> Stratum<V> {
             self.low = self.low.zip(other.low, f64::min);
             self.high = self.high.zip(other.high, f64::max);
         }
+    }
+}
+
+/// What the points of all strata have given.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Visited<V> {
+    strata: Vec<Stratum<V>>,
+    /// The weights of the points whose values were not finite, of the strata that had such.
+    left_out: BTreeMap<usize, Moments<f64>>,
+    /// How many parts of the walk under way are in it.
+    parts: u64,
+    /// The same without the part that could not be completed, if there was one.
+    before: Option<Box<Self>>,
+}
+
+impl<V: Value> Visited<V> {
+    pub(crate) fn new(strata: usize) -> Self {
+        Self {
+            strata: vec![Stratum::EMPTY; strata],
+            left_out: BTreeMap::new(),
+            parts: 0,
+            before: None,
+        }
+    }
+
+    pub(crate) fn strata(&self) -> &[Stratum<V>] {
+        &self.strata
+    }
+
+    /// How many points were evaluated.
+    pub(crate) fn used(&self) -> u64 {
+        let values = self.strata.iter().map(|stratum| stratum.moments.count());
+        values.sum::<u64>() + self.rejected()
+    }
+
+    /// How many values were not finite and left out.
+    pub(crate) fn rejected(&self) -> u64 {
+        self.left_out.values().map(Moments::count).sum()
+    }
+
+    /// Ready for the next walk through the same strata.
+    pub(crate) fn again(&mut self) {
+        self.parts = 0;
     }
 }
 
@@ -71,111 +141,6 @@ pub(crate) fn apportion(scores: &[f64], count: u64) -> Vec<u64> {
             2 + here
         })
         .collect()
-}
-
-/// What strata of equal weight say together.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Stratified<V> {
-    pub(crate) mean: V,
-    pub(crate) std_error: V,
-    /// Degrees of freedom of the error, the least of all components.[^welch]
-    ///
-    /// [^welch]: Satterthwaite, Franklin (1946). *An Approximate Distribution of Estimates of Variance
-    ///     Components*. <https://doi.org/10.2307/3002019>
-    pub(crate) freedom: f64,
-    /// The largest share of one value in the variance of the mean.
-    pub(crate) share: f64,
-    /// The largest absolute value.
-    pub(crate) size: V,
-}
-
-impl<V: Value> Stratified<V> {
-    /// `None` if a stratum has fewer than two values, or if there is none.
-    pub(crate) fn new(strata: &[Stratum<V>]) -> Option<Self> {
-        if strata.is_empty() {
-            return None;
-        }
-        let weight = 1.0 / strata.len() as f64;
-        let errors: Vec<V> = strata
-            .iter()
-            .map(|stratum| Some(stratum.moments.std_error()?.map(|error| error * weight)))
-            .collect::<Option<_>>()?;
-        let mean = strata.iter().fold(V::ZERO, |sum, stratum| {
-            sum.zip(stratum.moments.mean(), |sum, mean| sum + weight * mean)
-        });
-        let largest = errors
-            .iter()
-            .fold(V::ZERO, |largest, error| largest.zip(*error, f64::max));
-        let size = strata.iter().fold(V::ZERO, |size, stratum| {
-            let here = stratum
-                .low
-                .zip(stratum.high, |low, high| low.abs().max(high.abs()));
-            size.zip(here, f64::max)
-        });
-        let (mut squares, mut fourths, mut peak) = (V::ZERO, V::ZERO, V::ZERO);
-        for (stratum, &error) in strata.iter().zip(&errors) {
-            let moments = stratum.moments;
-            let less = moments.count() as f64 - 1.0;
-            // Squares relative to the largest: no overflow and no underflow.
-            let part = error.zip(largest, |error, largest| match largest {
-                0.0 => 0.0,
-                largest => (error / largest).powi(2),
-            });
-            squares = squares.zip(part, |sum, part| sum + part);
-            fourths = fourths.zip(part, |sum, part| sum + part * part / less);
-            let share = stratum
-                .high
-                .zip(moments.mean(), |high, mean| high - mean)
-                .zip(
-                    moments.mean().zip(stratum.low, |mean, low| mean - low),
-                    f64::max,
-                )
-                .zip(moments.root(), |deviation, root| match root {
-                    0.0 => 0.0,
-                    root => (deviation / root).powi(2),
-                });
-            peak = peak.zip(part.zip(share, |part, share| part * share), f64::max);
-        }
-        let std_error = squares.zip(largest, |squares, largest| largest * squares.sqrt());
-        // No more than can be told from infinitely many.
-        let (mut freedom, mut share) = (1e9_f64, 0.0_f64);
-        let _ = squares.zip(fourths, |squares, fourths| {
-            if fourths > 0.0 {
-                freedom = freedom.min(squares * squares / fourths);
-            }
-            0.0
-        });
-        let _ = peak.zip(squares, |peak, squares| {
-            if squares > 0.0 {
-                share = share.max(peak / squares);
-            }
-            0.0
-        });
-        Some(Self {
-            mean,
-            std_error,
-            freedom,
-            share,
-            size,
-        })
-    }
-
-    /// What the values themselves say against the error.
-    pub(crate) fn warnings(&self) -> Vec<Warning> {
-        let mut warnings = Vec::new();
-        let mut alike = false;
-        self.std_error.for_each(|error| alike |= error == 0.0);
-        if alike {
-            warnings.push(Warning::NoSpread);
-        }
-        // Few degrees of freedom are few strata, or few points in them, that decide everything.
-        let share = self.share.max(1.0 / self.freedom).min(1.0);
-        if share > 0.05 {
-            warnings.push(Warning::FewValues { share });
-        }
-        warnings.extend(Warning::of_rounding(self.std_error, self.size));
-        warnings
-    }
 }
 
 #[cfg(test)]

@@ -46,6 +46,11 @@ pub(crate) trait Tallied {
 
     fn policy(&self) -> NonFinite;
 
+    /// Whether the values are such as the estimator can take.
+    fn check<V: Value>(&self, _: &Tallies<V>) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// The estimate that the closed tallies give; `None` if they hold no value.
     fn summary<V: Value>(&self, tallies: &[Tally<V>]) -> Option<Estimate<V>>;
 }
@@ -68,6 +73,7 @@ pub(crate) fn run<E: Tallied, I: Integrand>(
         integrand,
         policy,
     );
+    let outcome = estimator.check(&tallies).and(outcome);
     let tallies = tallies.closed();
     let estimate = estimator.summary(&tallies).map(|estimate| Estimate {
         stop: if outcome.is_ok() {
@@ -110,14 +116,15 @@ pub(crate) fn grow<E: Tallied, I: Integrand>(
     let evaluations = evaluations.min(estimator.requested());
     let counts = estimator.counts(&sources, evaluations);
     let policy = estimator.policy();
-    evaluate(
+    let outcome = evaluate(
         &sources,
         &mut state.0,
         &counts,
         Tail::Open,
         integrand,
         policy,
-    )
+    );
+    estimator.check(state).and(outcome)
 }
 
 /// The estimate that a state gives.

@@ -61,6 +61,14 @@ pub enum Warning {
         /// The radix.
         radix: u32,
     },
+    /// Not all strata were visited before it was stopped. Those that were are a random sample of all, and the error bar is
+    /// that of this sample: right, but much larger than that of all strata.
+    Unvisited {
+        /// How many strata have points.
+        visited: u64,
+        /// How many there are.
+        strata: u64,
+    },
     /// The iterations of an adaptive estimator contradict one another.
     Inconsistent {
         /// Their chi-square per degree of freedom, which should be near 1.
@@ -102,6 +110,10 @@ impl fmt::Display for Warning {
             Self::NoPower { count, radix } => write!(
                 f,
                 "{count} points are no power of {radix}: a power spreads them more evenly"
+            ),
+            Self::Unvisited { visited, strata } => write!(
+                f,
+                "stopped after {visited} of {strata} strata: the error is that of a random sample of them"
             ),
             Self::Inconsistent { chi_square } => write!(
                 f,

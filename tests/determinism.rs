@@ -4,6 +4,7 @@
 //! program prints with and without it.
 #![cfg(feature = "parallel")]
 
+use estimand::estimators::{Bounded, Strata, Vegas};
 use estimand::points::{Independent, NRooks, Stratified};
 use estimand::{Average, Estimate, Estimator, MonteCarlo, Replicated, cube, each};
 
@@ -29,6 +30,17 @@ fn estimates() -> Vec<Estimate<[f64; 2]>> {
         Replicated::new(8, 12_345, |seed| NRooks::new(12_345, seed).unwrap())
             .estimate(&f)
             .unwrap(),
+        Bounded::new(100_000, 4, -1e9, 1e9)
+            .unwrap()
+            .estimate(&f)
+            .unwrap(),
+        Strata::new(7, 3, 100_000, 5).unwrap().estimate(&f).unwrap(),
+        Strata::new(7, 3, 100_000, 6)
+            .unwrap()
+            .neyman()
+            .estimate(&f)
+            .unwrap(),
+        Vegas::new(3, 300_000, 7).unwrap().estimate(&f).unwrap(),
     ]
 }
 

@@ -1,8 +1,10 @@
 //! Values that are not finite: named with their point, never averaged, never lost silently.
 
+use estimand::estimators::{Bounded, Strata, Vegas};
 use estimand::points::{Independent, NRooks, PointSet};
 use estimand::{
-    Average, Error, Estimator, Integrand, MonteCarlo, NonFinite, Replicated, Sampler, cube,
+    Average, Error, Estimator, Integrand, Moments, MonteCarlo, NonFinite, Replicated, Sampler,
+    Warning, cube,
 };
 
 const COUNT: u64 = 10_000;
@@ -152,6 +154,144 @@ fn rejected_values_are_left_out_and_counted() {
     assert!(estimate.rejected > 0 && estimate.used == COUNT);
 }
 
+/// The mean of x over the part of the square where x + y is at least 1/2, by elementary integration, is 23/42. It is found, and
+/// its error is that which is claimed, by every estimator: to 4.5 standard errors and to 6 standard deviations of a chi-square
+/// over 400 seeds, which fails in 1e-5 of all choices of the seeds.
+#[test]
+fn the_mean_of_the_rest_is_right_and_so_is_its_error() {
+    fn check<E: Estimator>(name: &str, estimator: impl Fn(u64) -> E) {
+        const RUNS: u64 = 400;
+        let f = cube(|[x, y]| if x + y < 0.5 { f64::NAN } else { x });
+        let (mut means, mut claims) = (Moments::new(), Moments::new());
+        for seed in 0..RUNS {
+            let estimate = estimator(seed).estimate(&f).unwrap();
+            // An eighth of the square, or less of it where a map leads elsewhere.
+            let part = estimate.rejected as f64 / estimate.used as f64;
+            assert!((0.03..0.2).contains(&part), "{name}: {part} of the values");
+            let told = Warning::Rejected {
+                rejected: estimate.rejected,
+            };
+            assert!(estimate.warnings.contains(&told));
+            means.push(estimate.mean);
+            claims.push(estimate.std_error.unwrap().powi(2));
+        }
+        let off = (means.mean() - 23.0 / 42.0) / means.std_error().unwrap();
+        assert!(
+            off.abs() < 4.5,
+            "{name}: {off} standard errors from the truth"
+        );
+        let ratio = claims.mean() / means.variance().unwrap();
+        let limit = 6.0 * (2.0 / RUNS as f64).sqrt();
+        assert!(
+            (ratio - 1.0).abs() < limit,
+            "{name}: variances of {ratio} times the true ones"
+        );
+    }
+    let rule = NonFinite::Reject;
+    check("plain", |seed| MonteCarlo::new(2000, seed).non_finite(rule));
+    check("bounded", |seed| {
+        Bounded::new(2000, seed, 0.0, 1.0).unwrap().non_finite(rule)
+    });
+    check("strata", |seed| {
+        Strata::new(5, 2, 2000, seed).unwrap().non_finite(rule)
+    });
+    check("neyman", |seed| {
+        Strata::new(5, 2, 2000, seed)
+            .unwrap()
+            .neyman()
+            .non_finite(rule)
+    });
+    check("vegas", |seed| {
+        Vegas::new(2, 4000, seed).unwrap().non_finite(rule)
+    });
+    check("replicated", |seed| {
+        Replicated::new(16, 125, Independent::new)
+            .seed(seed)
+            .non_finite(rule)
+    });
+}
+
+#[test]
+fn strata_without_values_weigh_nothing() {
+    // A constant where it is finite, in 3 of 9 cells nowhere: no error at all.
+    let f = cube(|[x, y]| {
+        if x < 1.0 / 3.0 {
+            f64::INFINITY
+        } else {
+            3.0 + 0.0 * y
+        }
+    });
+    for neyman in [false, true] {
+        let strata = Strata::new(3, 2, 1000, 1)
+            .unwrap()
+            .non_finite(NonFinite::Reject);
+        let strata = if neyman { strata.neyman() } else { strata };
+        let estimate = strata.estimate(&f).unwrap();
+        assert!((estimate.mean - 3.0).abs() < 1e-14);
+        assert!(estimate.std_error.unwrap() < 1e-14 && estimate.rejected > 100);
+    }
+}
+
+#[test]
+fn estimators_of_strata_name_the_point_and_carry_the_estimate_so_far() {
+    let f = cube(|[x, y]| if x * y > 0.99 { f64::NAN } else { x * y });
+    let check = |name: &str, incomplete: estimand::Incomplete<f64>| {
+        let Error::NonFinite {
+            coordinates, value, ..
+        } = incomplete.reason
+        else {
+            panic!("{name}: another error: {}", incomplete.reason);
+        };
+        assert!(
+            coordinates.len() == 2 && coordinates[0] * coordinates[1] > 0.99,
+            "{name}"
+        );
+        assert!(value.len() == 1 && value[0].is_nan(), "{name}");
+        let so_far = incomplete.so_far.expect(name);
+        assert!(so_far.used > 100, "{name}: {}", so_far.used);
+        assert!(
+            so_far.interval(0.9999).expect(name).contains(0.25),
+            "{name}: {so_far:?}"
+        );
+    };
+    // Few of the points are in that corner, some 1 in 20000.
+    check(
+        "strata",
+        Strata::new(8, 2, 200_000, 3)
+            .unwrap()
+            .estimate(&f)
+            .unwrap_err(),
+    );
+    check(
+        "neyman",
+        Strata::new(8, 2, 200_000, 3)
+            .unwrap()
+            .neyman()
+            .estimate(&f)
+            .unwrap_err(),
+    );
+    check(
+        "vegas",
+        Vegas::new(2, 200_000, 3).unwrap().estimate(&f).unwrap_err(),
+    );
+}
+
+#[test]
+fn a_value_outside_the_limits_is_named_and_leaves_a_mean_without_a_bound() {
+    let f = cube(|[x]: [f64; 1]| if x > 0.999 { 1.5 } else { x });
+    let incomplete = Bounded::new(10_000, 1, 0.0, 1.0)
+        .unwrap()
+        .estimate(&f)
+        .unwrap_err();
+    assert_eq!(
+        incomplete.reason.to_string(),
+        "the value of the integrand must be within the limits that were stated; it was 1.5"
+    );
+    let so_far = incomplete.so_far.unwrap();
+    assert!((so_far.mean - 0.5).abs() < 0.02);
+    assert_eq!((so_far.std_error, so_far.interval(0.95)), (None, None));
+}
+
 #[test]
 fn nothing_but_rejected_values_is_an_error() {
     let f = cube(|[_]| f64::NAN);
@@ -161,6 +301,12 @@ fn nothing_but_rejected_values_is_an_error() {
         .estimate(&f)
         .expect_err("all are NaN");
     assert_eq!(alone.reason, Error::NothingLeft { rejected: 100 });
+    let strata = Strata::new(5, 2, 100, 1).unwrap().non_finite(reject);
+    let alone = strata.estimate(&f).expect_err("all are NaN");
+    assert_eq!(alone.reason, Error::NothingLeft { rejected: 100 });
+    let vegas = Vegas::new(2, 4000, 1).unwrap().non_finite(reject);
+    let alone = vegas.estimate(&f).expect_err("all are NaN");
+    assert!(matches!(alone.reason, Error::NothingLeft { .. }));
     let rooks = |seed| NRooks::new(50, seed).unwrap();
     let several = Replicated::new(3, 50, rooks)
         .non_finite(reject)

@@ -3,11 +3,11 @@
 use core::ops::ControlFlow;
 use std::time::Duration;
 
-use estimand::estimators::Vegas;
+use estimand::estimators::{Bounded, Strata, Vegas};
 use estimand::points::{Independent, NRooks, Stratified};
 use estimand::{
-    Average, Error, Estimator, Integrand, MonteCarlo, NonFinite, Progressive, Replicated, Sampler,
-    Stop, Warning, cube,
+    Average, Error, Estimate, Estimator, Integrand, Moments, MonteCarlo, NonFinite, Progressive,
+    Replicated, Sampler, Stop, Value, Warning, cube,
 };
 use proptest::prelude::*;
 
@@ -43,18 +43,55 @@ impl Integrand for Rough {
     }
 }
 
-fn in_pieces<E: Progressive, I: Integrand>(estimator: &E, integrand: &I, cuts: &[u64])
+/// With the feature `parallel` every piece is evaluated by another number of threads than the one before.
+fn in_pieces<E: Progressive + Sync, I: Integrand>(estimator: &E, integrand: &I, cuts: &[u64])
 where
-    <I::Value as estimand::Value>::Wide: PartialEq,
+    E::State<<I::Value as Value>::Wide>: Send,
+    <I::Value as Value>::Wide: PartialEq,
 {
+    let direct = on_threads(0, || estimator.estimate(integrand)).unwrap();
     let mut state = estimator.start().unwrap();
-    let direct = estimator.estimate(integrand).unwrap();
-    for &cut in cuts {
-        estimator.grow(&mut state, integrand, cut).unwrap();
+    let all = cuts.iter().chain(&[u64::MAX]);
+    for (piece, &cut) in all.enumerate() {
+        on_threads(piece + 1, || estimator.grow(&mut state, integrand, cut)).unwrap();
         assert!(estimator.used(&state) >= cut.min(direct.used));
     }
-    estimator.grow(&mut state, integrand, u64::MAX).unwrap();
     assert_eq!(estimator.conclude(&state).unwrap(), direct);
+}
+
+/// Runs `work` on one, two or five threads.
+#[cfg(feature = "parallel")]
+fn on_threads<T: Send>(which: usize, work: impl FnOnce() -> T + Send) -> T {
+    use rayon::{ThreadPool, ThreadPoolBuilder};
+    static POOLS: std::sync::LazyLock<[ThreadPool; 3]> = std::sync::LazyLock::new(|| {
+        [1, 2, 5].map(|threads| {
+            ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap()
+        })
+    });
+    POOLS[which % 3].install(work)
+}
+
+#[cfg(not(feature = "parallel"))]
+fn on_threads<T>(_: usize, work: impl FnOnce() -> T) -> T {
+    work()
+}
+
+/// Has limits, and values that are not finite.
+struct Holes;
+
+impl Integrand for Holes {
+    type Value = [f64; 2];
+    fn evaluate<S: Sampler>(&self, u: &mut S) -> [f64; 2] {
+        let [x, y, z] = std::array::from_fn(|_| u.next_1d());
+        if x < 0.1 && y < 0.3 {
+            [f64::NAN, x]
+        } else {
+            [x * y, (5.0 * z).sin()]
+        }
+    }
 }
 
 proptest! {
@@ -70,7 +107,18 @@ proptest! {
         in_pieces(&MonteCarlo::new(count, seed), &Walk, &cuts);
         in_pieces(&MonteCarlo::new(count, seed).non_finite(NonFinite::Reject), &Rough, &cuts);
         in_pieces(&Average::new(Independent::new(seed), count), &Walk, &cuts);
-        in_pieces(&Vegas::new(2, count + 40, seed).unwrap(), &Walk, &cuts);
+        let rejecting = NonFinite::Reject;
+        let vegas = Vegas::new(2, count + 40, seed).unwrap();
+        in_pieces(&vegas, &Walk, &cuts);
+        in_pieces(&vegas.non_finite(rejecting), &Holes, &cuts);
+        let strata = Strata::new(1 + count % 7, 2, count + 200, seed).unwrap();
+        in_pieces(&strata, &Walk, &cuts);
+        in_pieces(&strata.neyman(), &Walk, &cuts);
+        in_pieces(&strata.non_finite(rejecting), &Holes, &cuts);
+        in_pieces(&strata.neyman().non_finite(rejecting), &Holes, &cuts);
+        let bounded = Bounded::new(count + 1, seed, -1.0, 1.0).unwrap().non_finite(rejecting);
+        in_pieces(&bounded, &Holes, &cuts);
+        in_pieces(&Replicated::new(6, count, Independent::new).seed(seed).median(), &Walk, &cuts);
         in_pieces(
             &Replicated::new(3, count, Independent::new).seed(seed).non_finite(NonFinite::Reject),
             &Rough,
@@ -113,6 +161,10 @@ fn a_saved_state_goes_on_as_if_it_had_not_been_saved() {
     let replicated = Replicated::new(4, 3000, Independent::new).non_finite(NonFinite::Reject);
     saved_and_restored(&replicated, &cuts);
     saved_and_restored(&replicated.median(), &cuts);
+    saved_and_restored(&Bounded::new(12_345, 3, 0.0, 1e301).unwrap(), &cuts);
+    let strata = Strata::new(5, 3, 12_345, 3).unwrap();
+    saved_and_restored(&strata, &cuts);
+    saved_and_restored(&strata.neyman(), &cuts);
     saved_and_restored(&Vegas::new(2, 12_345, 3).unwrap(), &cuts);
     // Iterations of several parts, cut within.
     let long = Vegas::new(2, 30_000, 3).unwrap().iterations(2).unwrap();
@@ -125,6 +177,12 @@ fn the_state_of_another_estimator_is_refused() {
     let other = Replicated::new(4, 10, Independent::new);
     let refused = other.grow(&mut state, &Walk, 5).unwrap_err();
     assert!(matches!(refused, Error::Refused { name: "state", .. }));
+    let strata = Strata::new(3, 2, 1000, 1).unwrap();
+    let mut state = strata.start().unwrap();
+    for other in [strata.neyman(), Strata::new(2, 3, 1000, 1).unwrap()] {
+        let refused = other.grow(&mut state, &Walk, 5).unwrap_err();
+        assert!(matches!(refused, Error::Refused { name: "state", .. }));
+    }
 }
 
 #[test]
@@ -192,6 +250,171 @@ fn time_and_callback_stop() {
     let estimate = watched.estimate(&f).unwrap();
     assert_eq!(estimate.stop, Stop::Cancelled);
     assert!(estimate.used >= 1000 && estimate.used < 10_000_000);
+}
+
+/// What is left if it is stopped after about `evaluations`.
+fn stopped<E: Progressive, I: Integrand>(
+    estimator: E,
+    integrand: &I,
+    evaluations: u64,
+) -> Estimate<<I::Value as Value>::Wide> {
+    let watched = estimator.until().watch(move |progress| {
+        if progress.used >= evaluations {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    watched.estimate(integrand).unwrap()
+}
+
+#[test]
+fn whatever_was_evaluated_before_a_stop_gives_an_estimate() {
+    let f = cube(|[x, y]: [f64; 2]| (x * y).exp());
+    const TRUTH: f64 = 1.317_902_151_454_404;
+    let check = |name: &str, estimate: Estimate<f64>| {
+        assert_eq!(estimate.stop, Stop::Cancelled, "{name}");
+        let interval = estimate.interval(0.9999).expect(name);
+        assert!(interval.contains(TRUTH), "{name}: {estimate:?}");
+    };
+    let huge = 1 << 40;
+    for evaluations in [20, 500, 20_000] {
+        check("plain", stopped(MonteCarlo::new(huge, 1), &f, evaluations));
+        let bounded = Bounded::new(huge, 1, 0.0, 3.0).unwrap();
+        check("bounded", stopped(bounded, &f, evaluations));
+        let strata = Strata::new(300, 2, huge, 1).unwrap();
+        check("strata", stopped(strata, &f, evaluations));
+        check("neyman", stopped(strata.neyman(), &f, evaluations));
+        let vegas = Vegas::new(2, huge, 1).unwrap();
+        check("vegas", stopped(vegas, &f, evaluations));
+        let replicated = Replicated::new(8, huge, Independent::new);
+        check("replicated", stopped(replicated, &f, evaluations));
+    }
+}
+
+#[test]
+fn strata_that_were_not_visited_are_told_of() {
+    let f = cube(|[x, y]: [f64; 2]| (x * y).exp());
+    let strata = Strata::new(100, 2, 1 << 30, 1).unwrap();
+    let some = |estimate: &Estimate<f64>| {
+        let [Warning::Unvisited { visited, strata }] = estimate.warnings[..] else {
+            panic!("other warnings: {:?}", estimate.warnings);
+        };
+        assert!(visited < strata);
+        [visited, strata]
+    };
+    let estimate = stopped(strata, &f, 1000);
+    assert_eq!(some(&estimate), [estimate.used / 2, 10_000]);
+    // All of them with few points have a much smaller error than some.
+    let all = stopped(strata, &f, 20_000);
+    assert!(all.warnings.is_empty());
+    assert!(all.std_error.unwrap() < 0.05 * estimate.std_error.unwrap());
+    // A pilot of all cells is better than the first few cells of the main points.
+    let neyman = Strata::new(100, 2, 400_000, 1).unwrap().neyman();
+    some(&stopped(neyman, &f, 1000));
+    let mut state = neyman.start().unwrap();
+    for evaluations in [20_000, 40_000, 41_000, 400_000] {
+        neyman.grow(&mut state, &f, evaluations).unwrap();
+        let estimate: Estimate<f64> = neyman.conclude(&state).unwrap();
+        assert!(estimate.warnings.is_empty(), "{estimate:?}");
+    }
+    // Sixteen of its strata, so few that one of them may decide; that is told as well.
+    let vegas = stopped(Vegas::new(2, 1 << 40, 1).unwrap(), &f, 1000);
+    let told = |warning: &Warning| {
+        matches!(
+            warning,
+            Warning::Unvisited {
+                visited: 2..1000,
+                strata: 60_000..
+            }
+        )
+    };
+    assert!(vegas.warnings.iter().any(told), "{:?}", vegas.warnings);
+}
+
+#[test]
+fn errors_of_some_strata_are_the_true_ones() {
+    // Means over 400 seeds: the mean square error is that which is claimed, to 6 standard deviations of a chi-square.
+    let f = cube(|[x, y]: [f64; 2]| (x * y).exp());
+    const TRUTH: f64 = 1.317_902_151_454_404;
+    let check = |name: &str, estimate: &dyn Fn(u64) -> Estimate<f64>| {
+        let (mut means, mut claims) = (Moments::new(), Moments::new());
+        for seed in 0..400 {
+            let estimate = estimate(seed);
+            means.push(estimate.mean);
+            claims.push(estimate.std_error.unwrap().powi(2));
+        }
+        let off = (means.mean() - TRUTH) / means.std_error().unwrap();
+        assert!(
+            off.abs() < 4.5,
+            "{name}: {off} standard errors from the truth"
+        );
+        let ratio = claims.mean() / means.variance().unwrap();
+        assert!(
+            (ratio - 1.0).abs() < 6.0 * (2.0_f64 / 400.0).sqrt(),
+            "{name}: {ratio}"
+        );
+    };
+    check("strata", &|seed| {
+        let strata = Strata::new(64, 2, 1 << 20, seed).unwrap();
+        let mut state = strata.start().unwrap();
+        strata.grow(&mut state, &f, 300).unwrap();
+        strata.conclude(&state).unwrap()
+    });
+    check("vegas", &|seed| {
+        let vegas = Vegas::new(2, 1 << 22, seed).unwrap();
+        let mut state = vegas.start().unwrap();
+        vegas.grow(&mut state, &f, 900).unwrap();
+        vegas.conclude(&state).unwrap()
+    });
+}
+
+#[test]
+fn strata_stop_at_tolerances() {
+    let f = cube(|[x, y]: [f64; 2]| (x * y).exp());
+    for neyman in [false, true] {
+        let strata = Strata::new(16, 2, 1 << 40, 3).unwrap();
+        let strata = if neyman { strata.neyman() } else { strata };
+        let run = strata.until().relative(1e-4).unwrap();
+        let estimate = run.estimate(&f).unwrap();
+        assert_eq!(estimate.stop, Stop::Tolerance);
+        // Plain points would take (1.96 * 0.27 / 1e-4)^2, some 28 million.
+        assert!(estimate.used < 1 << 19, "{}", estimate.used);
+        assert!((estimate.mean / 1.317_902_151_454_404 - 1.0).abs() < 3e-4);
+    }
+    let bounded = Bounded::new(1 << 40, 3, 0.0, 3.0).unwrap();
+    let estimate = bounded
+        .until()
+        .relative(1e-2)
+        .unwrap()
+        .estimate(&f)
+        .unwrap();
+    assert_eq!(estimate.stop, Stop::Tolerance);
+}
+
+#[test]
+fn a_slow_integrand_does_not_outlast_its_time_by_much() {
+    // A millisecond each: an iteration of VEGAS, or a round of strata, would take more than an hour.
+    let slow = cube(|[x]: [f64; 1]| {
+        std::thread::sleep(Duration::from_millis(1));
+        x
+    });
+    let time = Duration::from_millis(100);
+    let check = |name: &str, estimate: Estimate<f64>| {
+        assert_eq!(estimate.stop, Stop::Time, "{name}");
+        assert!(estimate.seconds < 5.0, "{name}: {}", estimate.seconds);
+        assert!(estimate.interval(0.9999).unwrap().contains(0.5), "{name}");
+    };
+    let vegas = Vegas::new(1, 1 << 40, 1).unwrap().until().time(time);
+    check("vegas", vegas.estimate(&slow).unwrap());
+    let strata = Strata::new(1 << 16, 1, 1 << 40, 1).unwrap();
+    check("strata", strata.until().time(time).estimate(&slow).unwrap());
+    check(
+        "neyman",
+        strata.neyman().until().time(time).estimate(&slow).unwrap(),
+    );
+    let plain = MonteCarlo::new(1 << 40, 1).until().time(time);
+    check("plain", plain.estimate(&slow).unwrap());
 }
 
 #[test]

@@ -105,7 +105,10 @@ impl Problem {
             },
             // Gamma(1/4)^4 / (4 pi^3): GSL's manual.
             Family::RandomWalk => 1.393_203_929_685_676_9,
-            Family::Indicator => power((u + 0.5 * width).min(1.0) - (u - 0.5 * width).max(0.0)),
+            Family::Indicator => {
+                let side = (u + 0.5 * width).min(1.0) - (u - 0.5 * width).max(0.0);
+                power(side.max(0.0))
+            }
             Family::Peak => {
                 let scale = width * 2.0_f64.sqrt();
                 power(0.5 * scale * PI.sqrt() * (erf((1.0 - u) / scale) + erf(u / scale)))

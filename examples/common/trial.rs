@@ -158,6 +158,7 @@ fn name(warning: Warning) -> &'static str {
         Warning::Rejected { .. } => "values rejected",
         Warning::Rounding { .. } => "rounding",
         Warning::NoPower { .. } => "no power",
+        Warning::Unvisited { .. } => "not all strata",
         Warning::Inconsistent { .. } => "iterations contradict",
         _ => "another",
     }

@@ -1,15 +1,11 @@
 //! Independent points, and an interval that needs no normal distribution.
 
-use std::time::Instant;
-
 use rand::rngs::Xoshiro256PlusPlus;
 
 use super::monte_carlo::Streams;
-use crate::evaluate::{Tail, evaluate};
+use crate::tallied::{Tallied, Tallies, tallied};
 use crate::tally::Tally;
-use crate::{
-    Error, ErrorBar, Estimate, Estimator, Incomplete, Integrand, NonFinite, Outcome, Value,
-};
+use crate::{Error, ErrorBar, Estimate, NonFinite, Value, Warning};
 
 /// The mean over independent points of an integrand between known limits, with an interval that holds for every
 /// number of points: the empirical Bernstein bound.
@@ -31,7 +27,8 @@ use crate::{
 ///
 /// # Errors of the estimate
 ///
-/// [`Error::Refused`] if a value lies outside the limits; see [`Estimator::estimate`].
+/// [`Error::Refused`] if a value lies outside the limits, with a mean that has no error bar; see also
+/// [`Estimator::estimate`](crate::Estimator::estimate).
 #[derive(Clone, Copy, Debug)]
 #[must_use]
 pub struct Bounded {
@@ -39,6 +36,7 @@ pub struct Bounded {
     seed: u64,
     low: f64,
     high: f64,
+    non_finite: NonFinite,
 }
 
 impl Bounded {
@@ -60,24 +58,18 @@ impl Bounded {
             seed,
             low,
             high,
+            non_finite: NonFinite::Fail,
         })
     }
-}
 
-impl Estimator for Bounded {
-    fn estimate<I: Integrand>(&self, integrand: &I) -> Outcome<I::Value> {
-        let clock = Instant::now();
-        let mut tallies = [Tally::EMPTY];
-        let source = Streams::<Xoshiro256PlusPlus>::new(self.seed);
-        let outcome = evaluate(
-            &[source],
-            &mut tallies,
-            &[self.count],
-            Tail::Closed,
-            integrand,
-            NonFinite::Fail,
-        );
-        let [tally] = tallies.map(|tally| tally.closed());
+    /// The same with another rule for values that are not finite.
+    pub const fn non_finite(mut self, rule: NonFinite) -> Self {
+        self.non_finite = rule;
+        self
+    }
+
+    /// A value outside the limits, if there was one.
+    fn outside<V: Value>(&self, tally: &Tally<V>) -> Option<f64> {
         let mut outside = None;
         let mut check = |x: f64| {
             if !(self.low..=self.high).contains(&x) {
@@ -88,28 +80,60 @@ impl Estimator for Bounded {
             high.for_each(&mut check);
             low.for_each(|x| check(-x));
         }
-        if let Some(value) = outside {
-            let domain = "within the limits that were stated";
-            return Err(Error::refused("value of the integrand", domain, value).into());
-        }
-        let moments = tally.moments();
-        let std_error = moments.std_error();
-        let estimate = (moments.count() > 0).then(|| Estimate {
-            std_error,
-            error_bar: ErrorBar::Bounded {
-                low: self.low,
-                high: self.high,
-            },
-            requested: self.count,
-            seconds: clock.elapsed().as_secs_f64(),
-            ..Estimate::new(moments.mean(), tally.used())
-        });
-        match outcome {
-            Ok(()) => estimate.ok_or_else(|| Error::NothingLeft { rejected: 0 }.into()),
-            Err(reason) => Err(Incomplete {
-                reason,
-                so_far: estimate.map(Box::new),
-            }),
-        }
+        outside
     }
 }
+
+impl Tallied for Bounded {
+    type Source<'a> = Streams<Xoshiro256PlusPlus>;
+
+    fn sources(&self) -> Result<Vec<Streams<Xoshiro256PlusPlus>>, Error> {
+        Ok(vec![Streams::new(self.seed)])
+    }
+
+    fn counts(&self, _: &[Streams<Xoshiro256PlusPlus>], evaluations: u64) -> Vec<u64> {
+        vec![evaluations]
+    }
+
+    fn requested(&self) -> u64 {
+        self.count
+    }
+
+    fn policy(&self) -> NonFinite {
+        self.non_finite
+    }
+
+    fn check<V: Value>(&self, state: &Tallies<V>) -> Result<(), Error> {
+        let tallies = state.closed();
+        match tallies.iter().find_map(|tally| self.outside(tally)) {
+            Some(value) => {
+                let domain = "within the limits that were stated";
+                Err(Error::refused("value of the integrand", domain, value))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn summary<V: Value>(&self, tallies: &[Tally<V>]) -> Option<Estimate<V>> {
+        let [tally] = tallies else { return None };
+        let moments = tally.moments();
+        let rejected = tally.rejected();
+        let (low, high) = (self.low, self.high);
+        // Without the limits there is no bound.
+        let holds = self.outside(tally).is_none();
+        (moments.count() > 0).then(|| Estimate {
+            std_error: moments.std_error().filter(|_| holds),
+            error_bar: if holds {
+                ErrorBar::Bounded { low, high }
+            } else {
+                ErrorBar::None
+            },
+            requested: self.count,
+            rejected,
+            warnings: Warning::of_rejected(rejected),
+            ..Estimate::new(moments.mean(), tally.used())
+        })
+    }
+}
+
+tallied!([] Bounded);

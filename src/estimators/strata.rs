@@ -1,19 +1,19 @@
 //! Independent points in every cell of a grid, with the variance of each cell.
 
-use core::ops::Range;
-use std::time::Instant;
-
-use rand::rngs::Xoshiro256PlusPlus;
-
-use super::monte_carlo::Streams;
-use crate::block::smaller;
-use crate::evaluate::{Source, Tail, Visit, Wide, evaluate};
-use crate::stratum::{Stratified, Stratum, apportion};
-use crate::tally::Tally;
+use crate::evaluate::Wide;
+use crate::points::Independent;
+use crate::progressive::at_once;
+use crate::stratum::{Rows, Stratified, Visited, Walk, apportion};
 use crate::{
-    Error, ErrorBar, Estimate, Estimator, Incomplete, Integrand, NonFinite, Outcome, Sampler, Stop,
-    Value, hash,
+    Error, ErrorBar, Estimate, Estimator, Integrand, NonFinite, Outcome, Progressive, Stop, Value,
+    Warning, hash,
 };
+
+mod cell;
+mod rounds;
+
+use cell::Cell;
+use rounds::Rounds;
 
 /// Stratified sampling: independent points in each of the equal cells of a grid, and an error bar made of the
 /// cells' own variances.
@@ -21,6 +21,10 @@ use crate::{
 /// The grid covers the first dimensions; further ones are independent. What varies from cell to cell adds nothing to the
 /// variance. With [`neyman`](Self::neyman) the cells get points in proportion to their standard deviations,
 /// which is the best there is.[^neyman]
+///
+/// Points come in rounds: two in each cell, cells in a random order, then four times as many, up to the number that the cell
+/// is due. So an estimate that is stopped early is one of all cells with fewer points, or, before the first round is complete,
+/// one of a random sample of the cells, with [`Warning::Unvisited`].
 ///
 /// A cell has at least two points. So there can be at most half as many cells as points; for one point a cell take
 /// [`Replicated`](crate::Replicated) with [`points::Stratified`](crate::points::Stratified).
@@ -46,6 +50,34 @@ pub struct Strata {
     count: u64,
     seed: u64,
     neyman: bool,
+    non_finite: NonFinite,
+}
+
+/// The state of a [`Strata`]; see [`Progressive`].
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct StrataState<V> {
+    /// Where the points find out how many to take.
+    pilot: Phase<V>,
+    main: Phase<V>,
+}
+
+/// Some rounds of points, and what they have given so far.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Phase<V> {
+    visited: Visited<V>,
+    /// How many rounds are complete.
+    rounds: u32,
+}
+
+impl<V: Value> Phase<V> {
+    fn new(strata: usize) -> Self {
+        Self {
+            visited: Visited::new(strata),
+            rounds: 0,
+        }
+    }
 }
 
 impl Strata {
@@ -78,6 +110,7 @@ impl Strata {
             count,
             seed,
             neyman: false,
+            non_finite: NonFinite::Fail,
         })
     }
 
@@ -90,39 +123,76 @@ impl Strata {
         self
     }
 
-    /// Evaluates `counts[k]` points in stratum `k`.
-    fn run<I: Integrand>(
+    /// The same with another rule for values that are not finite.
+    pub const fn non_finite(mut self, rule: NonFinite) -> Self {
+        self.non_finite = rule;
+        self
+    }
+
+    /// How many points the pilot has in each cell.
+    fn pilot(&self) -> u64 {
+        if self.neyman {
+            (self.count / 10 / self.strata as u64).max(2)
+        } else {
+            0
+        }
+    }
+
+    /// Goes on with a phase until `evaluations` of its points, or a few more, were evaluated, or all.
+    fn go_on<I: Integrand>(
         &self,
+        phase: &mut Phase<Wide<I>>,
+        counts: Vec<u64>,
         seed: u64,
-        counts: &[u64],
         integrand: &I,
-    ) -> (Vec<Tally<Wide<I>>>, Result<(), Error>) {
-        let cells: Vec<Cell> = (0..)
-            .zip(counts)
-            .map(|(index, _)| Cell {
-                grid: *self,
-                index,
-                streams: Streams::new(hash::hash(seed, index)),
-            })
-            .collect();
-        let mut tallies = vec![Tally::EMPTY; cells.len()];
-        let policy = NonFinite::Fail;
-        let outcome = evaluate(
-            &cells,
-            &mut tallies,
-            counts,
-            Tail::Closed,
-            integrand,
-            policy,
-        );
-        (tallies.iter().map(Tally::closed).collect(), outcome)
+        evaluations: u64,
+    ) -> Result<(), Error> {
+        /// Points that are evaluated in one go.
+        const LONGEST: u64 = 4096;
+        /// Coordinates computed ahead at most, beyond those of the grid, and of how many points. The latter must not depend on
+        /// what the integrand hints at, for no bit does.
+        const WIDEST: u32 = 32;
+        const ROWS: usize = 256;
+        // A single cell is the cube.
+        let axes = if self.cells > 1 { self.dimensions } else { 0 };
+        let width = integrand.dimensions().min(WIDEST).max(axes);
+        let rounds = Rounds::new(counts);
+        while phase.rounds < rounds.number() {
+            let before = rounds.before(phase.rounds);
+            if evaluations <= before {
+                break;
+            }
+            let seed = hash::hash(seed, u64::from(phase.rounds));
+            let walk = Walk::new(&rounds.counts(phase.rounds), seed, LONGEST);
+            let rows = Rows {
+                points: Independent::new(seed),
+                width,
+                number: ROWS,
+            };
+            walk.go_on(
+                &mut phase.visited,
+                evaluations - before,
+                |range| {
+                    let mut cell = Cell::new(self.cells, axes, width, integrand);
+                    (walk.evaluate(range, &rows, self.non_finite, &mut cell), ())
+                },
+                |()| (),
+            )?;
+            if !walk.is_complete(&phase.visited) {
+                break;
+            }
+            phase.visited.again();
+            phase.rounds += 1;
+        }
+        Ok(())
     }
 
     /// Points in proportion to the standard deviations, two a cell at least, no more than `count` in all.
-    fn allocate<V: Value>(&self, pilot: &[Tally<V>], count: u64) -> Vec<u64> {
+    fn allocate<V: Value>(&self, pilot: &Visited<V>, count: u64) -> Vec<u64> {
         let deviations: Vec<V> = pilot
+            .strata()
             .iter()
-            .map(|tally| tally.moments().std_dev().unwrap_or(V::ZERO))
+            .map(|stratum| stratum.moments.std_dev().unwrap_or(V::ZERO))
             .collect();
         let largest = deviations
             .iter()
@@ -150,162 +220,92 @@ impl Strata {
             .collect();
         apportion(&scores, count)
     }
+}
 
-    fn summary<V: Value>(&self, tallies: &[Tally<V>]) -> Option<Estimate<V>> {
-        let strata: Vec<_> = tallies.iter().map(Stratum::of).collect();
-        let stratified = Stratified::new(&strata)?;
+impl Progressive for Strata {
+    type State<V: Value> = StrataState<V>;
+
+    fn budget(&self) -> u64 {
+        self.count
+    }
+
+    fn start<V: Value>(&self) -> Result<StrataState<V>, Error> {
+        if self.neyman && self.count / (self.strata as u64) < self.pilot() + 2 {
+            let domain = "at least four for each stratum with a pilot";
+            return Err(Error::refused("count", domain, self.count));
+        }
+        Ok(StrataState {
+            pilot: Phase::new(if self.neyman { self.strata } else { 0 }),
+            main: Phase::new(self.strata),
+        })
+    }
+
+    fn used<V: Value>(&self, state: &StrataState<V>) -> u64 {
+        state.pilot.visited.used() + state.main.visited.used()
+    }
+
+    /// Goes on by parts of rounds.
+    fn grow<I: Integrand>(
+        &self,
+        state: &mut StrataState<Wide<I>>,
+        integrand: &I,
+        evaluations: u64,
+    ) -> Result<(), Error> {
+        let StrataState { pilot, main } = state;
+        let strata = [&*pilot, &*main].map(|phase| phase.visited.strata().len());
+        if strata != [if self.neyman { self.strata } else { 0 }, self.strata] {
+            let domain = "one of this estimator, with as many strata";
+            return Err(Error::refused("state", domain, strata[1]));
+        }
+        let each = self.pilot();
+        let spent = each * self.strata as u64;
+        let counts = if self.neyman {
+            let counts = vec![each; self.strata];
+            let seed = hash::hash(!self.seed, 0);
+            self.go_on(pilot, counts, seed, integrand, evaluations)?;
+            if evaluations <= spent {
+                return Ok(());
+            }
+            self.allocate(&pilot.visited, self.count - spent)
+        } else {
+            apportion(&vec![1.0; self.strata], self.count)
+        };
+        self.go_on(main, counts, self.seed, integrand, evaluations - spent)
+    }
+
+    fn conclude<V: Value>(&self, state: &StrataState<V>) -> Option<Estimate<V>> {
+        let StrataState { pilot, main } = state;
+        // All cells with few points are better than a few cells with many.
+        let phase = if self.neyman && main.rounds == 0 {
+            pilot
+        } else {
+            main
+        };
+        let together = Stratified::new(&phase.visited)?;
+        let rejected = pilot.visited.rejected() + main.visited.rejected();
+        let used = self.used(state);
+        let mut warnings = together.warnings();
+        warnings.extend(Warning::of_rejected(rejected));
         Some(Estimate {
-            std_error: Some(stratified.std_error),
+            std_error: together.error(),
             error_bar: ErrorBar::Strata {
-                freedom: stratified.freedom,
+                freedom: together.freedom,
             },
             requested: self.count,
-            warnings: stratified.warnings(),
-            ..Estimate::new(stratified.mean, tallies.iter().map(Tally::used).sum())
+            rejected,
+            stop: if used < self.count {
+                Stop::Unfinished
+            } else {
+                Stop::Count
+            },
+            warnings,
+            ..Estimate::new(together.mean, used)
         })
     }
 }
 
 impl Estimator for Strata {
     fn estimate<I: Integrand>(&self, integrand: &I) -> Outcome<I::Value> {
-        let clock = Instant::now();
-        let strata = self.strata as u64;
-        let mut spent = 0;
-        let counts = if self.neyman {
-            let each = (self.count / 10 / strata).max(2);
-            if self.count < strata * (each + 2) {
-                let domain = "at least four for each stratum with a pilot";
-                return Err(Error::refused("count", domain, self.count).into());
-            }
-            let seed = hash::hash(!self.seed, 0);
-            let (pilot, outcome) = self.run(seed, &vec![each; self.strata], integrand);
-            outcome?;
-            spent = each * strata;
-            self.allocate(&pilot, self.count - spent)
-        } else {
-            apportion(&vec![1.0; self.strata], self.count)
-        };
-        let (tallies, outcome) = self.run(self.seed, &counts, integrand);
-        let estimate = self.summary(&tallies).map(|estimate| Estimate {
-            used: estimate.used + spent,
-            seconds: clock.elapsed().as_secs_f64(),
-            ..estimate
-        });
-        match (outcome, estimate) {
-            (Ok(()), Some(estimate)) => Ok(estimate),
-            (Ok(()), None) => Err(Error::NothingLeft { rejected: 0 }.into()),
-            (Err(reason), so_far) => Err(Incomplete {
-                reason,
-                so_far: so_far.map(|estimate| {
-                    Box::new(Estimate {
-                        stop: Stop::Unfinished,
-                        ..estimate
-                    })
-                }),
-            }),
-        }
-    }
-}
-
-/// Independent points of one cell.
-struct Cell {
-    grid: Strata,
-    index: u64,
-    streams: Streams<Xoshiro256PlusPlus>,
-}
-
-impl Source for Cell {
-    fn points(&self, indices: Range<u64>, drawn: u64, _: u32, visit: &mut impl Visit) {
-        let Strata {
-            cells, dimensions, ..
-        } = self.grid;
-        let mut index = self.index;
-        let corner: Vec<f64> = (0..dimensions)
-            .map(|_| {
-                let place = index % cells;
-                index /= cells;
-                place as f64
-            })
-            .collect();
-        let mut u = Confined {
-            inner: self.streams.stream(indices.start, drawn),
-            cells: cells as f64,
-            corner: &corner,
-            left: &corner,
-        };
-        visit.stream(indices, &mut u, |u| u.left = u.corner);
-    }
-}
-
-/// The first coordinates of each point confined to a cell.
-struct Confined<'a, S> {
-    inner: S,
-    /// How many cells there are along an axis.
-    cells: f64,
-    /// Which of them it is, axis by axis.
-    corner: &'a [f64],
-    /// The same for the axes that the point has not read.
-    left: &'a [f64],
-}
-
-impl<S> Confined<'_, S> {
-    /// A coordinate of the whole axis moved to the `place`-th of its cells.
-    #[inline]
-    fn confine(&self, u: f64, place: f64) -> f64 {
-        const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
-        smaller((place + u) / self.cells, ALMOST_ONE)
-    }
-}
-
-impl<S: Sampler> Sampler for Confined<'_, S> {
-    #[inline]
-    fn next_1d(&mut self) -> f64 {
-        let u = self.inner.next_1d();
-        let Some((&place, left)) = self.left.split_first() else {
-            return u;
-        };
-        self.left = left;
-        self.confine(u, place)
-    }
-
-    /// Draws first and confines then, several at once.
-    #[inline]
-    fn next_nd(&mut self, out: &mut [f64]) {
-        self.inner.next_nd(out);
-        let (here, left) = self.left.split_at(out.len().min(self.left.len()));
-        self.left = left;
-        for (u, &place) in out.iter_mut().zip(here) {
-            *u = self.confine(*u, place);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Cursor;
-    use crate::points::Independent;
-
-    #[test]
-    fn coordinates_are_the_same_one_by_one_and_at_once() {
-        let points = Independent::new(5);
-        let corner = [2.0, 0.0, 6.0];
-        let confined = |index| Confined {
-            inner: Cursor::new(&points, index),
-            cells: 7.0,
-            corner: &corner,
-            left: &corner,
-        };
-        for index in 0..100 {
-            let (mut singly, mut together) = (confined(index), confined(index));
-            let mut out = [0.0; 5];
-            // Within the confined axes, across their end, and past it.
-            let (first, rest) = out.split_at_mut(2);
-            together.next_nd(first);
-            together.next_nd(rest);
-            assert_eq!(out, core::array::from_fn(|_| singly.next_1d()));
-            assert_eq!(together.next_1d(), singly.next_1d());
-            assert!((2.0 / 7.0..3.0 / 7.0).contains(&out[0]) && (6.0 / 7.0..1.0).contains(&out[2]));
-        }
+        at_once(self, integrand)
     }
 }

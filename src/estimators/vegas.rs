@@ -7,12 +7,13 @@ use crate::integrands::ImportanceMap;
 use crate::stratum::Stratified;
 use crate::warning::Warning;
 use crate::{
-    Error, ErrorBar, Estimate, Estimator, Incomplete, Integrand, Moments, Outcome, Progressive,
-    Stop, Value, hash,
+    Error, ErrorBar, Estimate, Estimator, Incomplete, Integrand, Moments, NonFinite, Outcome,
+    Progressive, Stop, Value, hash,
 };
 
 mod adaptation;
 mod grid;
+mod learner;
 
 use adaptation::{Adaptation, Pass};
 
@@ -21,7 +22,8 @@ use adaptation::{Adaptation, Pass};
 ///
 /// The first half of the iterations, five at most, only trains and is then forgotten. The others go on learning, each
 /// less than the one before, so that what they learn is averaged; each is unbiased whatever was learned before it, and their mean is weighted by their numbers of points, not by their claimed errors,
-/// which would bias it. An estimate that is stopped before is made of what training iterations there are.
+/// which would bias it. An estimate that is stopped before is made of what training iterations there are, and in the first of them
+/// of a random sample of its strata, with [`Warning::Unvisited`]. A few points at the very beginning only find out how large the values are.
 ///
 /// A peak that no point of the first iterations hits is not there for it: the estimate then comes with
 /// [`Warning::NoSpread`] or [`Warning::FewValues`]. Peaks along diagonals gain little. The maps of all axes are learned with
@@ -56,6 +58,7 @@ pub struct Vegas {
     damping: f64,
     map: ImportanceMap,
     trained: bool,
+    non_finite: NonFinite,
 }
 
 /// Evaluations of an iteration from which on its variances can be relied on.
@@ -76,6 +79,8 @@ pub struct Iteration<V> {
     pub share: f64,
     /// How many evaluations it made.
     pub used: u64,
+    /// How many of the values were not finite and left out.
+    pub rejected: u64,
     /// Whether it only trained, and is not part of the estimate.
     pub training: bool,
 }
@@ -85,6 +90,10 @@ pub struct Iteration<V> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VegasState<V> {
     adaptation: Adaptation<V>,
+    /// How many points only looked for the scale of the values.
+    looked: u64,
+    /// How many of their values were not finite.
+    rejected: u64,
     iterations: Vec<Iteration<V>>,
     /// The iteration that was begun.
     open: Option<Pass<V>>,
@@ -138,6 +147,7 @@ impl Vegas {
             damping: 0.5,
             map: ImportanceMap::identity(dimensions, bins.clamp(1, 1000))?,
             trained: false,
+            non_finite: NonFinite::Fail,
         })
     }
 
@@ -175,6 +185,12 @@ impl Vegas {
         Ok(self)
     }
 
+    /// The same with another rule for values that are not finite.
+    pub const fn non_finite(mut self, rule: NonFinite) -> Self {
+        self.non_finite = rule;
+        self
+    }
+
     /// The map that all evaluations together train.
     ///
     /// # Errors
@@ -207,8 +223,9 @@ impl Vegas {
                 so_far: estimate.map(Box::new),
             });
         }
+        let rejected = self.rejected(&state);
         Ok(Adapted {
-            estimate: estimate.ok_or(Error::NothingLeft { rejected: 0 })?,
+            estimate: estimate.ok_or(Error::NothingLeft { rejected })?,
             iterations: state.iterations,
             chi_square: chi_square.flatten(),
             map: state.adaptation.map,
@@ -237,7 +254,7 @@ impl Vegas {
         let main = if main.is_empty() { training } else { main };
         let number = main.len();
         if number == 0 {
-            return None;
+            return Some((self.unfinished(state)?, None));
         }
         // All iterations have nearly the same number of points.
         let share = 1.0 / number as f64;
@@ -270,6 +287,8 @@ impl Vegas {
             },
             share: largest_share,
             size: state.adaptation.scale,
+            visited: 1,
+            strata: 1,
         };
         // Each component's own; largest of all reported.
         let per_freedom = 1.0 / (number as f64 - 1.0).max(1.0);
@@ -305,11 +324,13 @@ impl Vegas {
         } else {
             together.freedom
         };
+        let rejected = self.rejected(state);
         let mut warnings = together.warnings();
         if self.count < ENOUGH {
             let count = self.count;
             warnings.push(Warning::SmallSample { count });
         }
+        warnings.extend(Warning::of_rejected(rejected));
         // Iterations that differ by rounding alone contradict nothing.
         let rounding = |warning: &Warning| matches!(warning, Warning::Rounding { .. });
         if let Some(chi_square) = chi_square.filter(|_| contradicted)
@@ -322,6 +343,7 @@ impl Vegas {
             error_bar: ErrorBar::Strata { freedom },
             replicates: main.iter().map(|one| one.mean).collect(),
             requested: self.count,
+            rejected,
             stop: if state.iterations.len() < self.iterations as usize {
                 Stop::Unfinished
             } else {
@@ -331,6 +353,34 @@ impl Vegas {
             ..Estimate::new(mean, self.used(state))
         };
         Some((estimate, chi_square))
+    }
+
+    /// The estimate from the part of the first iteration that there is.
+    fn unfinished<V: Value>(&self, state: &VegasState<V>) -> Option<Estimate<V>> {
+        let together = Stratified::new(&state.open.as_ref()?.visited)?;
+        let (used, rejected) = (self.used(state), self.rejected(state));
+        let mut warnings = together.warnings();
+        if used < ENOUGH {
+            warnings.push(Warning::SmallSample { count: used });
+        }
+        warnings.extend(Warning::of_rejected(rejected));
+        Some(Estimate {
+            std_error: together.error(),
+            error_bar: ErrorBar::Strata {
+                freedom: together.freedom,
+            },
+            requested: self.count,
+            rejected,
+            stop: Stop::Unfinished,
+            warnings,
+            ..Estimate::new(together.mean, used)
+        })
+    }
+
+    fn rejected<V: Value>(&self, state: &VegasState<V>) -> u64 {
+        let whole: u64 = state.iterations.iter().map(|one| one.rejected).sum();
+        let open = state.open.as_ref();
+        state.rejected + whole + open.map_or(0, |pass| pass.visited.rejected())
     }
 }
 
@@ -344,6 +394,8 @@ impl Progressive for Vegas {
     fn start<V: Value>(&self) -> Result<VegasState<V>, Error> {
         Ok(VegasState {
             adaptation: Adaptation::new(self.map.clone(), self.each()),
+            looked: 0,
+            rejected: 0,
             iterations: Vec::new(),
             open: None,
         })
@@ -351,8 +403,7 @@ impl Progressive for Vegas {
 
     fn used<V: Value>(&self, state: &VegasState<V>) -> u64 {
         let whole: u64 = state.iterations.iter().map(|one| one.used).sum();
-        let open = state.open.as_ref();
-        whole + open.map_or(0, |pass| state.adaptation.used(pass))
+        state.looked + whole + state.open.as_ref().map_or(0, Pass::used)
     }
 
     /// Goes on by parts of iterations. An iteration that is not complete is not part of the estimate yet.
@@ -364,6 +415,8 @@ impl Progressive for Vegas {
     ) -> Result<(), Error> {
         let VegasState {
             adaptation,
+            looked,
+            rejected,
             iterations,
             open,
         } = state;
@@ -372,17 +425,28 @@ impl Progressive for Vegas {
             let value = adaptation.map.dimensions();
             return Err(Error::refused("state", domain, value));
         }
-        let mut whole: u64 = iterations.iter().map(|one| one.used).sum();
-        while whole < evaluations && iterations.len() < self.iterations as usize {
-            let seed = hash::hash(self.seed, iterations.len() as u64);
-            let pass = open.get_or_insert_with(|| adaptation.begin(integrand, seed));
-            adaptation.go_on(pass, integrand, seed, evaluations - whole)?;
-            let points = adaptation.points();
-            if adaptation.used(pass) < points {
-                return Ok(());
+        let policy = self.non_finite;
+        if *looked == 0 && evaluations > 0 {
+            let seed = hash::hash(self.seed, u64::MAX);
+            [*looked, *rejected] = adaptation.look(integrand, seed, self.each(), policy)?;
+        }
+        let mut whole = *looked + iterations.iter().map(|one| one.used).sum::<u64>();
+        while iterations.len() < self.iterations as usize {
+            // The first points of all come with those that looked, so that there is always an estimate.
+            let least = u64::from(iterations.is_empty() && evaluations > 0);
+            let count = evaluations.saturating_sub(whole).max(least);
+            if count == 0 {
+                break;
             }
-            let Some(alone) = Stratified::new(&pass.strata) else {
-                return Err(Error::NothingLeft { rejected: 0 });
+            let seed = hash::hash(self.seed, iterations.len() as u64);
+            let pass = open.get_or_insert_with(|| adaptation.begin());
+            if !adaptation.go_on(pass, integrand, seed, count, policy)? {
+                break;
+            }
+            let points = pass.used();
+            let Some(alone) = Stratified::new(&pass.visited) else {
+                let rejected = pass.visited.rejected();
+                return Err(Error::NothingLeft { rejected });
             };
             whole += points;
             iterations.push(Iteration {
@@ -391,6 +455,7 @@ impl Progressive for Vegas {
                 freedom: alone.freedom,
                 share: alone.share,
                 used: points,
+                rejected: pass.visited.rejected(),
                 training: iterations.len() < self.training(),
             });
             // The first half of the iterations finds the place, a half of the way each; the others average what they

@@ -1,5 +1,6 @@
 //! A map that sends points where the integrand is large, axis by axis.
 
+use crate::block::smaller;
 use crate::{Error, Integrand, Sampler, Value};
 
 /// A map of the unit cube onto itself that sends more points where an integrand is large: VEGAS' importance map.[^lepage]
@@ -52,7 +53,7 @@ impl Bin {
     #[inline]
     pub(crate) fn image(&self, within: f64) -> f64 {
         const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
-        (self.start + within * self.width).min(ALMOST_ONE)
+        smaller(self.start + within * self.width, ALMOST_ONE)
     }
 }
 

@@ -1,0 +1,201 @@
+//! What strata of equal weight say together: mean, error, and how far the error can be trusted.
+
+use super::{Stratum, Visited};
+use crate::warning::Warning;
+use crate::{Moments, Value};
+
+/// What strata of equal weight say together.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stratified<V> {
+    pub(crate) mean: V,
+    pub(crate) std_error: V,
+    /// Degrees of freedom of the error, the least of all components.[^welch]
+    ///
+    /// [^welch]: Satterthwaite, Franklin (1946). *An Approximate Distribution of Estimates of Variance
+    ///     Components*. <https://doi.org/10.2307/3002019>
+    pub(crate) freedom: f64,
+    /// The largest share of one value in the variance of the mean.
+    pub(crate) share: f64,
+    /// The largest absolute value.
+    pub(crate) size: V,
+    /// How many of the strata have points.
+    pub(crate) visited: u64,
+    pub(crate) strata: u64,
+}
+
+impl<V: Value> Stratified<V> {
+    /// `None` if there is no value.
+    ///
+    /// Values that were left out are taken to have been the mean of the others. That gives the mean over the part of the
+    /// domain where there are values, and an error, that of a ratio, which is right to first order.
+    pub(crate) fn new(visited: &Visited<V>) -> Option<Self> {
+        if visited.left_out.is_empty() {
+            return Self::of(&visited.strata);
+        }
+        let (mut sum, mut number, mut missing) = (V::ZERO, 0.0, 0.0);
+        for (place, stratum) in visited.strata.iter().enumerate() {
+            let left_out = visited.left_out.get(&place).copied().unwrap_or_default();
+            let points = stratum.moments.count() + left_out.count();
+            if points > 0 {
+                let share = stratum.moments.count() as f64 / points as f64;
+                sum = sum.zip(stratum.moments.mean(), |sum, mean| sum + share * mean);
+                missing += (1.0 - share) * left_out.mean();
+                number += 1.0;
+            }
+        }
+        // What the domain would weigh if it had values everywhere is 1.
+        let weight = 1.0 - missing / number;
+        if !(weight > 0.0) {
+            return None;
+        }
+        let mean: V = sum.map(|sum| sum / number / weight);
+        let mut strata = visited.strata.clone();
+        for (&place, left_out) in &visited.left_out {
+            strata[place].moments.merge(Moments::from_parts(
+                left_out.count(),
+                mean.map(|mean| mean * left_out.mean()),
+                mean.map(|mean| mean.abs() * left_out.root()),
+            ));
+        }
+        let together = Self::of(&strata)?;
+        Some(Self {
+            mean,
+            std_error: together.std_error.map(|error| error / weight),
+            ..together
+        })
+    }
+
+    fn of(strata: &[Stratum<V>]) -> Option<Self> {
+        if strata.iter().all(|stratum| stratum.moments.count() > 1) {
+            Self::of_all(strata)
+        } else {
+            Self::of_some(strata)
+        }
+    }
+
+    /// From a random sample of the strata: their means are independent values of one distribution.
+    fn of_some(strata: &[Stratum<V>]) -> Option<Self> {
+        let visited = || strata.iter().filter(|stratum| stratum.moments.count() > 0);
+        let means: Moments<V> = visited().map(|stratum| stratum.moments.mean()).collect();
+        let share = visited().fold(V::ZERO, |share, stratum| {
+            let off = stratum.moments.mean().zip(means.mean(), |x, mean| x - mean);
+            let own = off.zip(means.root(), |off, root| match root {
+                0.0 => 0.0,
+                root => (off / root).powi(2),
+            });
+            share.zip(own, f64::max)
+        });
+        let mut largest = 0.0_f64;
+        share.for_each(|share| largest = largest.max(share));
+        (means.count() > 0).then(|| Self {
+            mean: means.mean(),
+            std_error: means.std_error().unwrap_or(V::ZERO),
+            freedom: means.count() as f64 - 1.0,
+            share: largest,
+            size: size(strata),
+            visited: means.count(),
+            strata: strata.len() as u64,
+        })
+    }
+
+    /// `None` if a stratum has fewer than two values, or if there is none.
+    fn of_all(strata: &[Stratum<V>]) -> Option<Self> {
+        if strata.is_empty() {
+            return None;
+        }
+        let weight = 1.0 / strata.len() as f64;
+        let errors: Vec<V> = strata
+            .iter()
+            .map(|stratum| Some(stratum.moments.std_error()?.map(|error| error * weight)))
+            .collect::<Option<_>>()?;
+        let mean = strata.iter().fold(V::ZERO, |sum, stratum| {
+            sum.zip(stratum.moments.mean(), |sum, mean| sum + weight * mean)
+        });
+        let largest = errors
+            .iter()
+            .fold(V::ZERO, |largest, error| largest.zip(*error, f64::max));
+        let (mut squares, mut fourths, mut peak) = (V::ZERO, V::ZERO, V::ZERO);
+        for (stratum, &error) in strata.iter().zip(&errors) {
+            let moments = stratum.moments;
+            let less = moments.count() as f64 - 1.0;
+            // Squares relative to the largest: no overflow and no underflow.
+            let part = error.zip(largest, |error, largest| match largest {
+                0.0 => 0.0,
+                largest => (error / largest).powi(2),
+            });
+            squares = squares.zip(part, |sum, part| sum + part);
+            fourths = fourths.zip(part, |sum, part| sum + part * part / less);
+            let share = stratum
+                .high
+                .zip(moments.mean(), |high, mean| high - mean)
+                .zip(
+                    moments.mean().zip(stratum.low, |mean, low| mean - low),
+                    f64::max,
+                )
+                .zip(moments.root(), |deviation, root| match root {
+                    0.0 => 0.0,
+                    root => (deviation / root).powi(2),
+                });
+            peak = peak.zip(part.zip(share, |part, share| part * share), f64::max);
+        }
+        let std_error = squares.zip(largest, |squares, largest| largest * squares.sqrt());
+        // No more than can be told from infinitely many.
+        let (mut freedom, mut share) = (1e9_f64, 0.0_f64);
+        let _ = squares.zip(fourths, |squares, fourths| {
+            if fourths > 0.0 {
+                freedom = freedom.min(squares * squares / fourths);
+            }
+            0.0
+        });
+        let _ = peak.zip(squares, |peak, squares| {
+            if squares > 0.0 {
+                share = share.max(peak / squares);
+            }
+            0.0
+        });
+        Some(Self {
+            mean,
+            std_error,
+            freedom,
+            share,
+            size: size(strata),
+            visited: strata.len() as u64,
+            strata: strata.len() as u64,
+        })
+    }
+
+    /// The error, if anything is known about it.
+    pub(crate) fn error(&self) -> Option<V> {
+        (self.freedom > 0.0).then_some(self.std_error)
+    }
+
+    /// What the values themselves say against the error.
+    pub(crate) fn warnings(&self) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        let (visited, strata) = (self.visited, self.strata);
+        if visited < strata {
+            warnings.push(Warning::Unvisited { visited, strata });
+        }
+        if self.freedom <= 0.0 {
+            return warnings;
+        }
+        let mut alike = false;
+        self.std_error.for_each(|error| alike |= error == 0.0);
+        if alike {
+            warnings.push(Warning::NoSpread);
+        }
+        // Few degrees of freedom are few strata, or few points in them, that decide everything.
+        let share = self.share.max(1.0 / self.freedom).min(1.0);
+        if share > 0.05 {
+            warnings.push(Warning::FewValues { share });
+        }
+        warnings.extend(Warning::of_rounding(self.std_error, self.size));
+        warnings
+    }
+}
+
+fn size<V: Value>(strata: &[Stratum<V>]) -> V {
+    strata
+        .iter()
+        .fold(V::ZERO, |size, stratum| size.zip(stratum.size(), f64::max))
+}

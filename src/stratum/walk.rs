@@ -1,0 +1,316 @@
+//! From stratum to stratum in a random order, and what is evaluated on the way.
+
+use core::ops::Range;
+
+use super::{Stratum, Visited};
+use crate::points::{Independent, PointSet};
+use crate::{Cursor, Error, NonFinite, Value, hash, reduce};
+
+/// So many points in each stratum, one stratum after the other, in parts that can be evaluated side by side.
+///
+/// The order of the strata is random. So those that were visited first are a random sample of all, and
+/// a walk that has to stop early has an estimate to give.
+pub(crate) struct Walk {
+    /// Which strata are visited, in their order.
+    order: Vec<u32>,
+    /// The numbers of points up to and with each visit.
+    ends: Vec<u64>,
+    /// Points in a part at most, a power of two.
+    longest: u64,
+}
+
+/// Points in the first part. The next ones are longer, so that what is quick is done in few parts and
+/// what is slow can be stopped.
+const SHORTEST: u64 = 256;
+
+impl Walk {
+    /// `counts[k]` points in stratum `k`, in an order that `key` selects; no part is longer than about `longest`.
+    pub(crate) fn new(counts: &[u64], key: u64, longest: u64) -> Self {
+        let strata = counts.len() as u64;
+        #[expect(clippy::cast_possible_truncation, reason = "strata are in memory")]
+        let order: Vec<u32> = (0..strata)
+            .map(|visit| hash::permute(visit, strata, key) as u32)
+            .collect();
+        let mut end = 0;
+        let ends = order.iter().map(|&stratum| {
+            end += counts[stratum as usize];
+            end
+        });
+        Self {
+            ends: ends.collect(),
+            order,
+            longest: longest.next_power_of_two().max(SHORTEST),
+        }
+    }
+
+    /// How many points there are.
+    fn points(&self) -> u64 {
+        self.ends.last().copied().unwrap_or(0)
+    }
+
+    /// The first point of a part, or the end of the last.
+    fn first_of(&self, part: u64) -> u64 {
+        let doublings = u64::from((self.longest / SHORTEST).ilog2());
+        let first = match part {
+            0 => 0,
+            part if part <= doublings => SHORTEST << (part - 1),
+            part => self.longest.saturating_mul(part - doublings),
+        };
+        first.min(self.points())
+    }
+
+    /// How many parts are needed for `count` points.
+    fn parts(&self, count: u64) -> u64 {
+        let doublings = u64::from((self.longest / SHORTEST).ilog2());
+        let count = count.min(self.points());
+        if count > self.longest {
+            doublings + count.div_ceil(self.longest)
+        } else {
+            u64::from(count > 0)
+                + u64::from(count.div_ceil(SHORTEST).max(1).next_power_of_two().ilog2())
+        }
+    }
+
+    /// Whether all points are in `visited`.
+    pub(crate) fn is_complete<V>(&self, visited: &Visited<V>) -> bool {
+        visited.parts >= self.parts(u64::MAX)
+    }
+
+    /// Goes on until `count` points of this walk, or a few more, are in `visited`, or all. `job` evaluates a range of them;
+    /// what it gives besides goes to `take`.
+    pub(crate) fn go_on<V: Value, T: Send>(
+        &self,
+        visited: &mut Visited<V>,
+        count: u64,
+        job: impl Fn(Range<u64>) -> (Part<V>, T) + Sync,
+        mut take: impl FnMut(T) + Send,
+    ) -> Result<(), Error> {
+        let begun = visited.parts;
+        let jobs = self.parts(count).saturating_sub(begun);
+        reduce::in_order(
+            jobs,
+            |part| job(self.first_of(begun + part)..self.first_of(begun + part + 1)),
+            |(part, more)| {
+                if let Some(offender) = part.offender {
+                    if visited.before.is_none() {
+                        visited.before = Some(Box::new(visited.clone()));
+                        self.merge(visited, part.given);
+                    }
+                    return Err(*offender);
+                }
+                if let Some(before) = visited.before.take() {
+                    *visited = *before;
+                }
+                self.merge(visited, part.given);
+                take(more);
+                visited.parts += 1;
+                Ok(())
+            },
+        )
+    }
+
+    fn merge<V: Value>(&self, visited: &mut Visited<V>, given: Given<V>) {
+        for (visit, stratum) in (given.first..).zip(&given.strata) {
+            visited.strata[self.order[visit] as usize].merge(stratum);
+        }
+        for (visit, weight) in given.left_out {
+            let stratum = self.order[visit] as usize;
+            visited.left_out.entry(stratum).or_default().push(weight);
+        }
+    }
+
+    /// Evaluates the points `range`.
+    pub(crate) fn evaluate<T: Visitor>(
+        &self,
+        range: Range<u64>,
+        rows: &Rows,
+        policy: NonFinite,
+        visitor: &mut T,
+    ) -> Part<T::Value> {
+        let mut visit = self.ends.partition_point(|&end| end <= range.start);
+        let last = self.ends.partition_point(|&end| end < range.end);
+        let mut part = Part {
+            given: Given {
+                first: visit,
+                strata: vec![Stratum::EMPTY; (last + 1).saturating_sub(visit)],
+                left_out: Vec::new(),
+            },
+            offender: None,
+        };
+        // Points without coordinates need rows all the same, if empty ones.
+        let width = rows.width as usize;
+        let stride = width.max(1);
+        let mut room = vec![0.0; rows.number * stride];
+        let mut filled = range.start..range.start;
+        let mut values = Vec::with_capacity(rows.number);
+        let mut index = range.start;
+        let mut entered = None;
+        while index < range.end {
+            if index == filled.end {
+                let left = range.end - index;
+                let number =
+                    usize::try_from(left).map_or(rows.number, |left| left.min(rows.number));
+                let ahead = &mut room[..number * width];
+                rows.points.fill(index, 0..rows.width, ahead);
+                filled = index..index + number as u64;
+            }
+            while self.ends[visit] <= index {
+                visit += 1;
+            }
+            if entered != Some(visit) {
+                visitor.enter(self.order[visit] as usize);
+                entered = Some(visit);
+            }
+            let end = self.ends[visit].min(filled.end);
+            let [row, past] = [index, end].map(|index| {
+                usize::try_from(index - filled.start).expect("it is in memory") * stride
+            });
+            visitor.place(&mut room[row..past]);
+            let ahead = &room[row..past];
+            values.resize(ahead.len() / stride, T::Value::ZERO);
+            let points = ahead.chunks_exact(stride).zip(index..).enumerate();
+            for (value, (place, (row, index))) in values.iter_mut().zip(points) {
+                let row = &row[..width];
+                *value = visitor.value(
+                    place,
+                    Cursor::with_row(&rows.points, index, row, rows.width),
+                );
+            }
+            let run = Stratum::sums(&values).or_else(|| {
+                let at = |place: usize| {
+                    let row = &ahead[place * stride..][..width];
+                    Cursor::with_prefix(&rows.points, index + place as u64, row)
+                };
+                part.sort_out(index, visit, &mut values, policy, |place| {
+                    visitor.look(place, at(place))
+                });
+                (!values.is_empty()).then(|| Stratum::of(&values))
+            });
+            if let Some(run) = run {
+                part.given.strata[visit - part.given.first].merge(&run);
+            }
+            if part.offender.is_some() {
+                break;
+            }
+            index = end;
+        }
+        part
+    }
+}
+
+/// How coordinates are computed ahead.
+pub(crate) struct Rows {
+    pub(crate) points: Independent,
+    /// The first coordinates of each point.
+    pub(crate) width: u32,
+    /// Of so many points at once.
+    pub(crate) number: usize,
+}
+
+/// Evaluates an integrand in one stratum after the other.
+pub(crate) trait Visitor {
+    type Value: Value;
+
+    /// The next points are in `stratum`.
+    fn enter(&mut self, stratum: usize);
+
+    /// Moves points, a row of coordinates each, from the unit cube into the stratum.
+    fn place(&mut self, rows: &mut [f64]);
+
+    /// The value at the point of the row `place` of those that were placed last, times the weight of the point.
+    fn value(&mut self, place: usize, u: Cursor<'_, Independent>) -> Self::Value;
+
+    /// The same point once more.
+    fn look(&mut self, place: usize, u: Cursor<'_, Independent>) -> Look<Self::Value>;
+}
+
+/// A point, looked at closely.
+pub(crate) struct Look<V> {
+    /// The coordinates of its image.
+    pub(crate) coordinates: Vec<f64>,
+    /// The value there.
+    pub(crate) value: V,
+    pub(crate) weight: f64,
+}
+
+/// What a part of a walk has given, and the value that ended it if one did.
+pub(crate) struct Part<V> {
+    given: Given<V>,
+    offender: Option<Box<Error>>,
+}
+
+/// What a part of a walk has given.
+struct Given<V> {
+    /// The visit to the first of its strata.
+    first: usize,
+    strata: Vec<Stratum<V>>,
+    /// Visits and weights of the points whose values were left out.
+    left_out: Vec<(usize, f64)>,
+}
+
+impl<V: Value> Part<V> {
+    /// Takes those out of the `values` of one stratum, from the point `first` on, that are not finite.
+    #[cold]
+    fn sort_out(
+        &mut self,
+        first: u64,
+        visit: usize,
+        values: &mut Vec<V>,
+        policy: NonFinite,
+        mut look: impl FnMut(usize) -> Look<V>,
+    ) {
+        let mut kept = 0;
+        for (place, index) in (0..values.len()).zip(first..) {
+            if values[place].is_finite() {
+                values[kept] = values[place];
+                kept += 1;
+                continue;
+            }
+            let look = look(place);
+            if policy == NonFinite::Fail {
+                let Look {
+                    coordinates, value, ..
+                } = look;
+                self.offender = Some(Box::new(Error::of_value(index, coordinates, value)));
+                break;
+            }
+            self.given.left_out.push((visit, look.weight));
+        }
+        values.truncate(kept);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_follow_one_another_and_end_where_they_are_asked_to() {
+        for longest in [256, 1024, 16_384] {
+            let walk = Walk::new(&[70_000, 2, 3], 7, longest);
+            let parts = walk.parts(u64::MAX);
+            assert_eq!((walk.first_of(0), walk.first_of(parts)), (0, 70_005));
+            for part in 0..parts {
+                let (first, end) = (walk.first_of(part), walk.first_of(part + 1));
+                assert!(first < end && end - first <= longest, "{first} to {end}");
+                assert_eq!(walk.parts(first), part);
+                assert_eq!(walk.parts(first + 1), part + 1);
+            }
+        }
+        assert_eq!(Walk::new(&[], 0, 1).parts(u64::MAX), 0);
+    }
+
+    #[test]
+    fn every_stratum_is_visited_once_with_its_points() {
+        let counts: Vec<u64> = (2..40).collect();
+        let walk = Walk::new(&counts, 3, 256);
+        let mut seen = walk.order.clone();
+        for (visit, &stratum) in seen.iter().enumerate() {
+            let before = visit.checked_sub(1).map_or(0, |visit| walk.ends[visit]);
+            assert_eq!(walk.ends[visit] - before, counts[stratum as usize]);
+        }
+        assert!(!seen.is_sorted());
+        seen.sort_unstable();
+        assert!(seen.into_iter().eq(0..38));
+    }
+}

@@ -85,7 +85,8 @@ impl Line {
 
 const WIDTH: f64 = 560.0;
 const LEFT: f64 = 66.0;
-const RIGHT: f64 = 546.0;
+/// Leaves room for half of a label below the right end: "300 ms".
+const RIGHT: f64 = 532.0;
 const TOP: f64 = 10.0;
 const BOTTOM: f64 = 320.0;
 /// Where the legend begins, and how high its rows are.
@@ -204,7 +205,7 @@ impl Chart {
                 let _ = write!(
                     text,
                     "<text x=\"{at:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                    BOTTOM + 18.0,
+                    BOTTOM + 20.0,
                     tick.text
                 );
             }
@@ -405,6 +406,16 @@ mod tests {
         assert_eq!(scale.place(1e9), 100.0);
         assert!(scale.holds(1.0) && !scale.holds(1000.0));
         assert_eq!(Scale::new([].into_iter(), [0.0, 1.0]).high, 1.0);
+    }
+
+    #[test]
+    fn a_label_at_the_right_end_has_room() {
+        // Nothing is drawn farther to the right than `RIGHT`; a character of 13 px is at most 8 px wide.
+        let ends = [Point::new(0.003, 0.001), Point::new(0.3, 1.0)];
+        let mut chart = Chart::new("t", Axis::seconds("x"), Axis::new("y"));
+        let svg = chart.line(Line::new("l", ends)).svg();
+        assert!(svg.contains(">300 ms<"), "{svg}");
+        assert!(RIGHT + 0.5 * 8.0 * "300 ms".len() as f64 <= WIDTH);
     }
 
     #[test]

@@ -1,13 +1,18 @@
 //! What a coordinate costs: whole blocks (`fill/d8`, `fill/d32`, `fill/d128`) and single ones (`coordinate`), beside the
 //! generators and point sets that one could take instead, and beside a plain store as the limit.
 //!
-//! Criterion reports elements, which are coordinates, per second.
+//! Criterion reports elements, which are coordinates, per second. A ratio needs both sides in turns, so that what else the machine does
+//! hits both:
+//!
+//! `POINTS_TURNS=301 cargo bench --all-features --bench points`
+//!
+//! prints medians, quartiles, and ratios to the fastest peer; and those of one thread and two.
 
 use std::hint::black_box;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use criterion::measurement::WallTime;
-use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{BenchmarkGroup, Criterion, Throughput};
 use estimand::points::{
     BlueNoise, DigitPermutation, DigitalShift, Faure, Halton, Hammersley, HashedOwen, Independent,
     Kronecker, Lattice, LatticeSequence, LinearMatrix, MultiJittered, NRooks, OrthogonalArray,
@@ -32,6 +37,9 @@ fn settings<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, 
         .measurement_time(Duration::from_millis(400));
     group
 }
+
+/// A block is written, again and again.
+type Fill = Box<dyn FnMut(&mut [f64])>;
 
 /// Every set of the crate whose blocks are timed.
 fn sets(dimensions: u32) -> Vec<(&'static str, Box<dyn PointSet>)> {
@@ -108,72 +116,54 @@ fn sets(dimensions: u32) -> Vec<(&'static str, Box<dyn PointSet>)> {
     ]
 }
 
-fn fill(criterion: &mut Criterion, dimensions: u32) {
-    let mut group = settings(criterion, &format!("fill/d{dimensions}"));
+/// What one could take instead, and a plain store.
+fn peers(dimensions: u32) -> Vec<(&'static str, Fill)> {
     let width = dimensions as usize;
-    let mut out = vec![0.0; BLOCK];
-    let rows = (BLOCK / width) as u64;
-    group.throughput(Throughput::Elements(out.len() as u64));
-
     let mut value = 0.0;
-    group.bench_function("limit: store", |bencher| {
-        bencher.iter(|| {
-            value += 1.0;
-            black_box(&mut out[..]).fill(black_box(value));
-        });
-    });
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(SEED);
-    group.bench_function("peer: rand Xoshiro256PlusPlus", |bencher| {
-        bencher.iter(|| {
-            for u in black_box(&mut out[..]) {
-                *u = generator.random();
-            }
-        });
-    });
     let table = sobol_qmc::params::JoeKuoD6::STANDARD;
-    group.bench_function("peer: sobol-qmc", |bencher| {
-        let mut sobol = sobol_qmc::Sobol::<f64>::new(width, &table).unwrap();
-        bencher.iter(|| {
-            for (row, point) in black_box(&mut out[..])
-                .chunks_exact_mut(width)
-                .zip(&mut sobol)
-            {
-                row.copy_from_slice(&point);
-            }
-        });
-    });
-    group.bench_function("peer: halton", |bencher| {
-        // The crate's bases are at most 255: the first 54 primes.
-        let mut sequences: Vec<_> = PRIMES
-            .iter()
-            .cycle()
-            .take(width)
-            .map(|&base| halton::Sequence::new(base))
-            .collect();
-        bencher.iter(|| {
-            for (column, sequence) in sequences.iter_mut().enumerate() {
-                let column = out[column..].iter_mut().step_by(width);
-                for (u, coordinate) in column.zip(sequence) {
-                    *u = coordinate;
+    let mut sobol = sobol_qmc::Sobol::<f64>::new(width, &table).unwrap();
+    // The crate's bases are at most 255: the first 54 primes.
+    let mut sequences: Vec<_> = PRIMES
+        .iter()
+        .cycle()
+        .take(width)
+        .map(|&base| halton::Sequence::new(base))
+        .collect();
+    let mut peers: Vec<(&str, Fill)> = vec![
+        (
+            "limit: store",
+            Box::new(move |out| {
+                value += 1.0;
+                out.fill(black_box(value));
+            }),
+        ),
+        (
+            "peer: rand Xoshiro256PlusPlus",
+            Box::new(move |out| out.fill_with(|| generator.random())),
+        ),
+        (
+            "peer: sobol-qmc",
+            Box::new(move |out| {
+                for (row, point) in out.chunks_exact_mut(width).zip(&mut sobol) {
+                    row.copy_from_slice(&point);
                 }
-            }
-            black_box(&mut out);
-        });
-    });
-    if dimensions <= 32 {
-        group.bench_function("peer: quasi-rd", |bencher| {
-            let mut sequence = quasi_rd::Sequence::new(width);
-            bencher.iter(|| {
-                for u in black_box(&mut out[..]) {
-                    *u = sequence.next_f64();
+            }),
+        ),
+        (
+            "peer: halton",
+            Box::new(move |out| {
+                for (column, sequence) in sequences.iter_mut().enumerate() {
+                    let column = out[column..].iter_mut().step_by(width);
+                    for (u, coordinate) in column.zip(sequence) {
+                        *u = coordinate;
+                    }
                 }
-            });
-        });
-    }
-    group.bench_function(
-        "peer: sobol_burley, 4 at once, f32, hashed Owen",
-        |bencher| {
-            bencher.iter(|| {
+            }),
+        ),
+        (
+            "peer: sobol_burley, 4 at once, f32, hashed Owen",
+            Box::new(move |out| {
                 for (index, row) in (0..).zip(out.chunks_exact_mut(width)) {
                     for (set, four) in (0..).zip(row.chunks_exact_mut(4)) {
                         let coordinates = sobol_burley::sample_4d(index, set, 1);
@@ -182,16 +172,39 @@ fn fill(criterion: &mut Criterion, dimensions: u32) {
                         }
                     }
                 }
-            });
-        },
-    );
+            }),
+        ),
+    ];
+    if dimensions <= 32 {
+        let mut sequence = quasi_rd::Sequence::new(width);
+        let fill = move |out: &mut [f64]| out.fill_with(|| sequence.next_f64());
+        peers.push(("peer: quasi-rd", Box::new(fill)));
+    }
+    peers
+}
+
+/// All that is timed.
+fn cases(dimensions: u32) -> Vec<(&'static str, Fill)> {
+    let rows = BLOCK as u64 / u64::from(dimensions);
+    let mut cases = peers(dimensions);
     for (name, points) in sets(dimensions) {
+        let mut first = 0;
+        let fill = move |out: &mut [f64]| {
+            points.fill(first, 0..dimensions, out);
+            first = (first + rows) % COUNT;
+        };
+        cases.push((name, Box::new(fill)));
+    }
+    cases
+}
+
+fn fill(criterion: &mut Criterion, dimensions: u32) {
+    let mut group = settings(criterion, &format!("fill/d{dimensions}"));
+    let mut out = vec![0.0; BLOCK];
+    group.throughput(Throughput::Elements(out.len() as u64));
+    for (name, mut fill) in cases(dimensions) {
         group.bench_function(name, |bencher| {
-            let mut first = 0;
-            bencher.iter(|| {
-                points.fill(first, 0..dimensions, black_box(&mut out));
-                first = (first + rows) % COUNT;
-            });
+            bencher.iter(|| fill(black_box(&mut out)));
         });
     }
     group.finish();
@@ -252,43 +265,129 @@ fn coordinate(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The same block by one thread, and by two of which each writes a half.
+/// How many blocks are written by one thread, and by two of which each writes a half: so many that starting the threads, about 50
+/// microseconds, does not count.
+const ROUNDS: u64 = 512;
+
+/// Writes the blocks in turns, each thread into its own room.
+fn on_threads(points: &impl PointSet, rooms: &mut [Vec<f64>]) {
+    let (count, rows) = (rooms.len(), BLOCK as u64 / 32);
+    std::thread::scope(|scope| {
+        for (thread, out) in (0..).zip(rooms) {
+            scope.spawn(move || {
+                for round in (thread..ROUNDS).step_by(count) {
+                    points.fill(round * rows, 0..32, black_box(out));
+                }
+            });
+        }
+    });
+}
+
 fn threads(criterion: &mut Criterion) {
-    const DIMENSIONS: u32 = 32;
-    const ROUNDS: u64 = 64;
     let mut group = settings(criterion, "threads/d32");
     group.throughput(Throughput::Elements(ROUNDS * BLOCK as u64));
-    let points = Sobol::new(DIMENSIONS)
-        .unwrap()
-        .scrambled(HashedOwen { seed: SEED });
-    let rows = (BLOCK / DIMENSIONS as usize) as u64;
+    let points = Sobol::new(32).unwrap();
+    let points = points.scrambled(HashedOwen { seed: SEED });
     for count in [1, 2] {
-        let mut outs = vec![vec![0.0; BLOCK]; count];
+        let mut rooms = vec![vec![0.0; BLOCK]; count];
         group.bench_function(format!("Sobol, HashedOwen, {count} thread(s)"), |bencher| {
-            bencher.iter(|| {
-                std::thread::scope(|scope| {
-                    for (thread, out) in (0..).zip(&mut outs) {
-                        let points = &points;
-                        scope.spawn(move || {
-                            for round in (thread..ROUNDS).step_by(count) {
-                                points.fill(round * rows, 0..DIMENSIONS, black_box(out));
-                            }
-                        });
-                    }
-                });
-            });
+            bencher.iter(|| on_threads(&points, &mut rooms));
         });
     }
     group.finish();
 }
 
-fn points(criterion: &mut Criterion) {
-    threads(criterion);
-    for dimensions in [8, 32, 128] {
-        fill(criterion, dimensions);
-    }
-    coordinate(criterion);
+/// The times of a case in all rounds, in nanoseconds for each coordinate.
+struct Times {
+    name: String,
+    times: Vec<f64>,
 }
 
-criterion_group!(benches, points);
-criterion_main!(benches);
+impl Times {
+    fn of(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            times: Vec::new(),
+        }
+    }
+
+    fn time(&mut self, coordinates: u64, run: impl FnOnce()) {
+        let start = Instant::now();
+        run();
+        let seconds = start.elapsed().as_secs_f64();
+        self.times.push(seconds * 1e9 / coordinates as f64);
+    }
+
+    /// Median and quartiles, and those of the ratios to another case in the same rounds.
+    fn print(&self, other: &Self) {
+        let ratios = self.times.iter().zip(&other.times).map(|(a, b)| a / b);
+        let [time, ratio] = [self.times.clone(), ratios.collect()].map(|mut values| {
+            values.sort_by(f64::total_cmp);
+            [1, 2, 3].map(|quartile| values[(values.len() - 1) * quartile / 4])
+        });
+        println!(
+            "| {} | {:.3} | {:.3} to {:.3} | {:.2} | {:.2} to {:.2} |",
+            self.name, time[1], time[0], time[2], ratio[1], ratio[0], ratio[2]
+        );
+    }
+}
+
+/// All cases in turns.
+fn turns(rounds: usize) {
+    for dimensions in [8, 32, 128] {
+        let mut cases = cases(dimensions);
+        let mut out = vec![0.0; BLOCK];
+        let mut all: Vec<Times> = cases.iter().map(|(name, _)| Times::of(name)).collect();
+        for _ in 0..rounds {
+            for ((_, fill), times) in cases.iter_mut().zip(&mut all) {
+                times.time(BLOCK as u64, || fill(black_box(&mut out)));
+            }
+        }
+        let median = |times: &Times| {
+            let mut times = times.times.clone();
+            times.sort_by(f64::total_cmp);
+            times[times.len() / 2]
+        };
+        let fastest = all
+            .iter()
+            .filter(|times| times.name.starts_with("peer"))
+            .min_by(|a, b| median(a).total_cmp(&median(b)))
+            .expect("some peers");
+        println!(
+            "| d = {dimensions} | ns | quartiles | to {} | quartiles |",
+            fastest.name
+        );
+        all.iter().for_each(|times| times.print(fastest));
+    }
+    let points = Sobol::new(32).unwrap();
+    let points = points.scrambled(HashedOwen { seed: SEED });
+    let mut rooms = vec![vec![0.0; BLOCK]; 2];
+    let [mut one, mut two] = ["one thread", "two threads"].map(Times::of);
+    for _ in 0..rounds {
+        one.time(ROUNDS * BLOCK as u64, || {
+            on_threads(&points, &mut rooms[..1])
+        });
+        two.time(ROUNDS * BLOCK as u64, || on_threads(&points, &mut rooms));
+    }
+    println!("| Sobol, HashedOwen, d = 32 | ns | quartiles | to two threads | quartiles |");
+    one.print(&two);
+    two.print(&two);
+}
+
+fn main() {
+    if let Some(rounds) = std::env::var_os("POINTS_TURNS") {
+        let rounds = rounds.to_str().and_then(|rounds| rounds.parse().ok());
+        return turns(
+            rounds
+                .filter(|&rounds| rounds > 0)
+                .expect("a number of rounds"),
+        );
+    }
+    let mut criterion = Criterion::default().configure_from_args();
+    threads(&mut criterion);
+    for dimensions in [8, 32, 128] {
+        fill(&mut criterion, dimensions);
+    }
+    coordinate(&mut criterion);
+    criterion.final_summary();
+}

@@ -194,6 +194,10 @@ macro_rules! pointer {
                 (**self).size()
             }
 
+            fn radix(&self) -> Option<u32> {
+                (**self).radix()
+            }
+
             fn dimensions(&self) -> u32 {
                 (**self).dimensions()
             }

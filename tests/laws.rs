@@ -163,6 +163,7 @@ macro_rules! laws {
             fn a_box_is_the_set() {
                 let (points, boxed) = ($points, Box::new($points) as Box<dyn PointSet>);
                 assert_eq!((points.size(), points.dimensions()), (boxed.size(), boxed.dimensions()));
+                assert_eq!(points.radix(), boxed.radix());
                 assert_eq!(points.coordinate(5, 1), boxed.coordinate(5, 1));
             }
         }

@@ -105,13 +105,11 @@ impl Choice {
                 dimensions,
             )),
             Set::VanDerCorput => self.shiftable(set, VanDerCorput::new(2)?),
-            Set::Lattice if count.is_power_of_two() || count > 1 << 13 => {
-                self.shiftable(set, Lattice::published(count, dimensions)?)
-            }
-            // The published vector is made for powers of two.
-            Set::Lattice => {
+            // The published vector is made for powers of two. Others are found soon enough for few points.
+            Set::Lattice if !count.is_power_of_two() && count <= 1 << 13 && dimensions <= 1024 => {
                 self.shiftable(set, Lattice::component_by_component(count, dimensions)?)
             }
+            Set::Lattice => self.shiftable(set, Lattice::published(count, dimensions)?),
             Set::Kronecker => self.shiftable(set, Kronecker::r(dimensions)?),
             Set::Sobol => {
                 let sobol = Sobol::new(dimensions)?;

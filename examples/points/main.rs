@@ -6,12 +6,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use estimand::discrepancy::{Periodogram, Points};
 use estimand::points::{MultiJittered, PointSet, Stratified};
 
 #[path = "../common/sets.rs"]
 mod sets;
 
-mod periodogram;
 mod picture;
 
 /// Prints the points of a set as comma-separated values, one point a line, and draws their projections on
@@ -21,9 +21,9 @@ struct Arguments {
     /// The set
     #[arg(value_enum)]
     set: sets::Set,
-    /// In how many dimensions
-    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..))]
-    dims: u32,
+    /// In how many dimensions, 65536 at most; 2 unless it is said, and 1 of van-der-corput
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1 << 16))]
+    dims: Option<u32>,
     /// How many points
     #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u64).range(1..))]
     count: u64,
@@ -38,7 +38,7 @@ struct Arguments {
     /// Where the picture goes
     #[arg(long, value_name = "FILE")]
     png: Option<PathBuf>,
-    /// A pair of dimensions to draw, as in `0,1`; may be given several times
+    /// A pair of dimensions to draw, as in `0,1`; may be given several times. One dimension is drawn against the index
     #[arg(long, value_name = "X,Y", value_parser = pair, default_value = "0,1")]
     project: Vec<[u32; 2]>,
 }
@@ -101,42 +101,51 @@ impl From<io::Error> for Failure {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments {
-        set,
-        dims,
-        count,
-        first,
-        choice,
-        ..
-    } = *arguments;
-    let points = choice.build(set, dims, count)?;
-    let used = points.size().unwrap_or(count);
-    if used != count {
-        eprintln!("note: {set} has {used} points, the nearest to {count} that it can have");
+    let Arguments { set, first, .. } = *arguments;
+    let points = arguments.points(arguments.choice)?;
+    let count = points.size().unwrap_or(arguments.count);
+    if count != arguments.count {
+        let asked = arguments.count;
+        eprintln!("note: {set} has {count} points, the nearest to {asked} that it can have");
     }
-    if first.checked_add(used - 1).is_none() {
+    if first.checked_add(count - 1).is_none() {
         return Err(Failure::Usage(format!(
-            "{used} points from index {first} on pass the last index, {}",
+            "{count} points from index {first} on pass the last index, {}",
             u64::MAX
         )));
+    }
+    // The picture first: who reads the coordinates may stop before their end.
+    if let Some(path) = &arguments.png {
+        draw(points.as_ref(), arguments, count)?
+            .save(path)
+            .map_err(|error| Failure::File(path.clone(), error.to_string()))?;
     }
     let standard = arguments
         .csv
         .as_ref()
         .is_some_and(|path| path.as_os_str() == "-");
     if standard || (arguments.csv.is_none() && arguments.png.is_none()) {
-        print(points.as_ref(), arguments, used, io::stdout().lock())?;
+        print(points.as_ref(), arguments, count, io::stdout().lock())?;
     } else if let Some(path) = &arguments.csv {
         let at = |error: io::Error| Failure::File(path.clone(), error.to_string());
         let file = File::create(path).map_err(at)?;
-        print(points.as_ref(), arguments, used, file).map_err(at)?;
-    }
-    if let Some(path) = &arguments.png {
-        draw(points.as_ref(), arguments, used)?
-            .save(path)
-            .map_err(|error| Failure::File(path.clone(), error.to_string()))?;
+        print(points.as_ref(), arguments, count, file).map_err(at)?;
     }
     Ok(())
+}
+
+impl Arguments {
+    fn dims(&self) -> u32 {
+        self.dims.unwrap_or(match self.set {
+            sets::Set::VanDerCorput => 1,
+            _ => 2,
+        })
+    }
+
+    /// The set, randomised as `choice` says.
+    fn points(&self, choice: sets::Choice) -> Result<Box<dyn PointSet>, estimand::Error> {
+        choice.build(self.set, self.dims(), self.count)
+    }
 }
 
 /// Writes the points with 17 significant digits, which tell every number apart.
@@ -149,14 +158,15 @@ fn print(
     /// Coordinates that are computed at once.
     const BLOCK: u64 = 1 << 14;
     let mut out = BufWriter::new(out);
-    let width = arguments.dims as usize;
-    let rows = (BLOCK / u64::from(arguments.dims)).clamp(1, count);
+    let dims = arguments.dims();
+    let width = dims as usize;
+    let rows = (BLOCK / u64::from(dims)).clamp(1, count);
     let mut block = vec![0.0; usize::try_from(rows).unwrap_or(1) * width];
     let mut done = 0;
     while done < count {
         let rows = rows.min(count - done);
         let block = &mut block[..usize::try_from(rows).unwrap_or(1) * width];
-        points.fill(arguments.first + done, 0..arguments.dims, block);
+        points.fill(arguments.first + done, 0..dims, block);
         for row in block.chunks_exact(width) {
             for (column, u) in row.iter().enumerate() {
                 let comma = if column == 0 { "" } else { "," };
@@ -181,58 +191,68 @@ fn draw(
             "a picture shows at most {MOST} points; there are {count}"
         )));
     }
+    let dims = arguments.dims();
+    let projections = match dims {
+        1 => &[[0, 0]],
+        _ => arguments.project.as_slice(),
+    };
+    if let Some([x, y]) = projections
+        .iter()
+        .find(|pair| pair.iter().any(|&d| d >= dims))
+    {
+        return Err(Failure::Usage(format!(
+            "the dimensions {x},{y} are not below the number of dimensions, {dims}"
+        )));
+    }
     let mut panels = Vec::new();
-    for &[x, y] in &arguments.project {
-        if arguments.dims > 1 && x.max(y) >= arguments.dims {
-            return Err(Failure::Usage(format!(
-                "the dimensions {x},{y} are not below --dims {}",
-                arguments.dims
-            )));
-        }
+    for &[x, y] in projections {
         let project = |points: &dyn PointSet| -> Vec<[f64; 2]> {
             (0..count)
                 .map(|place| {
                     let index = arguments.first + place;
                     // One dimension is drawn against the index.
-                    if arguments.dims == 1 {
-                        return [place as f64 / count as f64, points.coordinate(index, 0)];
-                    }
-                    [x, y].map(|dimension| points.coordinate(index, dimension))
+                    let across = match dims {
+                        1 => place as f64 / count as f64,
+                        _ => points.coordinate(index, x),
+                    };
+                    [across, points.coordinate(index, y)]
                 })
                 .collect()
         };
-        let choice = arguments.choice;
-        let strata = [x, y].map(|dimension| strata(arguments, count, dimension));
+        let plane = project(points);
+        let mut spectra = vec![spectrum(&plane)?];
         // The spectrum of random sets is that of many of them.
-        let replicates = (0..16).map(|replicate| {
-            let seed = choice.seed.wrapping_add(replicate);
-            let replicate = sets::Choice { seed, ..choice };
-            Ok(project(
-                replicate
-                    .build(arguments.set, arguments.dims, arguments.count)?
-                    .as_ref(),
-            ))
-        });
-        let replicates = replicates.collect::<Result<Vec<_>, estimand::Error>>()?;
-        panels.push([
-            picture::scatter(&project(points), strata),
-            picture::shades(&periodogram::power(&replicates)),
-        ]);
+        for replicate in 1..16 {
+            let seed = arguments.choice.seed.wrapping_add(replicate);
+            let choice = sets::Choice {
+                seed,
+                ..arguments.choice
+            };
+            let other = project(arguments.points(choice)?.as_ref());
+            if other == plane {
+                break;
+            }
+            spectra.push(spectrum(&other)?);
+        }
+        let strata = [x, y].map(|dimension| strata(arguments, count, dimension));
+        panels.push([picture::scatter(&plane, strata), picture::shades(&spectra)]);
     }
     Ok(picture::side_by_side(&panels))
 }
 
+fn spectrum(points: &[[f64; 2]]) -> Result<Periodogram, estimand::Error> {
+    Periodogram::new(&Points::from_arrays(points)?, picture::HIGHEST)
+}
+
 /// How many strata the set has along an axis.
 fn strata(arguments: &Arguments, count: u64, dimension: u32) -> u64 {
-    let Arguments {
-        set, dims, choice, ..
-    } = *arguments;
-    match set {
+    let seed = arguments.choice.seed;
+    match arguments.set {
         sets::Set::Stratified => {
-            Stratified::new(count, dims, choice.seed).map_or(1, |grid| grid.cells(dimension))
+            Stratified::new(count, arguments.dims(), seed).map_or(1, |grid| grid.cells(dimension))
         }
         sets::Set::MultiJittered => {
-            MultiJittered::new(count, choice.seed).map_or(1, |grid| grid.cells(dimension))
+            MultiJittered::new(count, seed).map_or(1, |grid| grid.cells(dimension))
         }
         sets::Set::OrthogonalArray => count.isqrt(),
         sets::Set::NRooks => count,

@@ -1,13 +1,13 @@
 //! Panels of equal size, drawn into an image.
 
+use estimand::discrepancy::Periodogram;
 use image::{Rgb, RgbImage};
 
-use crate::periodogram::SIDE;
+/// The highest frequency of a periodogram, in cycles over the square.
+pub(crate) const HIGHEST: u32 = 64;
 
-const _: () = assert!(PANEL as usize == 3 * SIDE);
-
-/// The side of a panel, and the margin around it, in pixels: three for each of the 129 frequencies of a periodogram.
-const PANEL: u32 = 3 * 129;
+/// The side of a panel, and the margin around it, in pixels: three for each of the frequencies of a periodogram, positive and negative.
+const PANEL: u32 = 3 * (2 * HIGHEST + 1);
 const MARGIN: u32 = 16;
 
 const PAPER: Rgb<u8> = Rgb([255; 3]);
@@ -72,11 +72,21 @@ fn level(value: f64) -> u8 {
     value.round().clamp(0.0, 255.0) as u8
 }
 
-/// A periodogram: black for no power, middle grey for that of independent points, white from four times that on.
-pub(crate) fn shades(power: &[f64]) -> RgbImage {
+/// The mean of periodograms: black for no power, middle grey for that of independent points, white from four times that on. At
+/// frequency 0, where the power is the number of points, it is left black.
+pub(crate) fn shades(spectra: &[Periodogram]) -> RgbImage {
+    let frequency = |pixel: u32| (pixel / 3).cast_signed() - HIGHEST.cast_signed();
     RgbImage::from_fn(PANEL, PANEL, |x, y| {
-        let (column, row) = ((x / 3) as usize, ((PANEL - 1 - y) / 3) as usize);
-        Rgb([level(127.5 * power[row * SIDE + column].sqrt()); 3])
+        let (first, second) = (frequency(x), frequency(PANEL - 1 - y));
+        let sum: f64 = spectra
+            .iter()
+            .map(|spectrum| spectrum.power(first, second))
+            .sum();
+        let power = match (first, second) {
+            (0, 0) => 0.0,
+            _ => sum / spectra.len() as f64,
+        };
+        Rgb([level(127.5 * power.sqrt()); 3])
     })
 }
 

@@ -60,3 +60,64 @@ impl<'a> Block<'a> {
         self.out.len().checked_div(self.width).unwrap_or(0)
     }
 }
+
+/// Dimensions whose coordinates are computed before they are put in their places: those of one line of the cache, so that no
+/// line is written twice.
+pub(super) const TOGETHER: usize = 8;
+
+/// Begins with a line of the cache, so that no vector of an array is in two.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Aligned<T>(pub(super) T);
+
+/// Where coordinates are put side by side: those of `POINTS` points in the first and in the last half of the dimensions.
+#[repr(align(64))]
+pub(super) struct Rows<const POINTS: usize> {
+    left: [[f64; TOGETHER / 2]; POINTS],
+    right: [[f64; TOGETHER / 2]; POINTS],
+}
+
+impl<const POINTS: usize> Rows<POINTS> {
+    pub(super) const fn new() -> Self {
+        Self {
+            left: [[0.0; TOGETHER / 2]; POINTS],
+            right: [[0.0; TOGETHER / 2]; POINTS],
+        }
+    }
+
+    /// Writes the coordinates of the points from the one at `place` on, as many as there are `rows`, into `columns` of the rows. They
+    /// come dimension by dimension, of which the first `columns.len()` have a meaning.
+    #[inline(always)]
+    pub(super) fn write<'a>(
+        &mut self,
+        [a, b, c, d, e, f, g, h]: [&[f64; POINTS]; TOGETHER],
+        place: usize,
+        rows: impl Iterator<Item = &'a mut [f64]>,
+        columns: Range<usize>,
+    ) {
+        for (place, four) in self.left.iter_mut().enumerate() {
+            *four = [a[place], b[place], c[place], d[place]];
+        }
+        for (place, four) in self.right.iter_mut().enumerate() {
+            *four = [e[place], f[place], g[place], h[place]];
+        }
+        let coordinates = self.left[place..]
+            .iter()
+            .zip(&self.right[place..])
+            .zip(rows);
+        if columns.len() == TOGETHER {
+            for ((left, right), row) in coordinates {
+                let row = &mut row[columns.start..][..TOGETHER];
+                row[..TOGETHER / 2].copy_from_slice(left);
+                row[TOGETHER / 2..].copy_from_slice(right);
+            }
+        } else {
+            for ((left, right), row) in coordinates {
+                let coordinates = left.iter().chain(right);
+                for (u, &coordinate) in row[columns.clone()].iter_mut().zip(coordinates) {
+                    *u = coordinate;
+                }
+            }
+        }
+    }
+}

@@ -3,11 +3,10 @@
 use core::ops::Range;
 
 use super::PointSet;
-use super::block::Block;
-use super::scramble::{Columns, DigitOrder, scramble_reversed};
-use super::sobol::{multiplied, table};
+use super::block::{Aligned, Block, Rows, TOGETHER, vectorised};
+use super::scramble::scramble_reversed;
 use crate::Error;
-use crate::hash::{hash, permute, unit};
+use crate::hash::{hash, hash_prepared, prepare, unit};
 
 /// One net for all pixels of an image, dealt to them along a shuffled Morton curve: neighbouring pixels get points
 /// that complement one another.[^ahmed]
@@ -35,8 +34,6 @@ use crate::hash::{hash, permute, unit};
 #[derive(Clone, Copy, Debug)]
 #[must_use]
 pub struct BlueNoise {
-    /// Those of a pair, for digits of which the first is the lowest bit.
-    matrices: &'static [Columns],
     /// The logarithm of the number of samples for each pixel.
     samples: u32,
     seed: u64,
@@ -57,7 +54,6 @@ impl BlueNoise {
             ));
         }
         Ok(Self {
-            matrices: table(2, DigitOrder::FirstLowest),
             samples: samples.trailing_zeros(),
             seed,
         })
@@ -67,7 +63,7 @@ impl BlueNoise {
     pub fn pixel(&self, pixel: [u32; 2]) -> BlueNoisePixel {
         BlueNoisePixel {
             image: *self,
-            first: morton(pixel) << self.samples,
+            pixel: morton(pixel),
         }
     }
 }
@@ -89,24 +85,18 @@ fn morton(pixel: [u32; 2]) -> u64 {
 #[must_use]
 pub struct BlueNoisePixel {
     image: BlueNoise,
-    first: u64,
+    /// The place of the pixel on the Morton curve.
+    pixel: u64,
 }
 
 impl BlueNoisePixel {
     /// The points in the dimensions `2 pair` and `2 pair + 1`, of the image number `image`.
-    #[inline]
+    #[inline(always)]
     fn pair(&self, image: u64, pair: u32) -> Pair {
-        let BlueNoise {
-            matrices,
-            samples,
-            seed,
-        } = self.image;
-        let key = hash(hash(seed, image), u64::from(pair));
+        let key = hash(hash(self.image.seed, image), u64::from(pair));
         Pair {
-            matrices,
-            samples,
-            key,
-            pixel: Curve::START.followed_by(self.first >> samples, 32, key),
+            axes: [0, 1].map(|axis| hash(!key, axis)),
+            curve: Curve::new(key).followed_by(self.pixel, 32),
         }
     }
 }
@@ -114,8 +104,10 @@ impl BlueNoisePixel {
 impl PointSet for BlueNoisePixel {
     #[inline]
     fn coordinate(&self, index: u64, dimension: u32) -> f64 {
-        let pair = self.pair(index >> self.image.samples, dimension / 2);
-        pair.coordinate(pair.place(index), dimension % 2)
+        let samples = self.image.samples;
+        let pair = self.pair(index >> samples, dimension / 2);
+        let place = pair.curve.followed_by(index, samples).shuffled;
+        pair.coordinate(place, dimension as usize % 2)
     }
 
     fn size(&self) -> Option<u64> {
@@ -123,26 +115,67 @@ impl PointSet for BlueNoisePixel {
     }
 
     fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
-        let block = Block::new(first, dimensions, out, u32::MAX, 0);
+        let mut block = Block::new(first, dimensions, out, u32::MAX, 0);
+        let pairs = block.dimensions.start / 2..block.dimensions.end.div_ceil(2);
+        for tile in pairs.clone().step_by(PAIRS) {
+            let pairs = tile..pairs.end.min(tile + PAIRS as u32);
+            vectorised(
+                #[inline(always)]
+                || self.fill_tile(&mut block, pairs),
+            );
+        }
+    }
+}
+
+/// Pairs of dimensions that are computed before their coordinates are put in their places.
+const PAIRS: usize = TOGETHER / 2;
+
+/// Samples that are computed at once.
+const LANES: usize = 64;
+
+/// Numbers that all lanes are made of by one digit more.
+const NODES: usize = LANES / 4;
+
+impl BlueNoisePixel {
+    /// Writes the coordinates in the dimensions of `pairs`, [`PAIRS`] at most, into their columns of the block.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "below the number of lanes")]
+    fn fill_tile(&self, block: &mut Block<'_>, pairs: Range<u32>) {
+        let samples = self.image.samples;
+        // The first pair may begin before the block.
         let Range { start, end } = block.dimensions;
-        let size = 1 << self.image.samples;
-        let (mut index, mut out) = (first, block.out);
+        let first = start.max(2 * pairs.start);
+        let skipped = (first - 2 * pairs.start) as usize;
+        let columns =
+            (first - start) as usize..(end.min(pairs.end.saturating_mul(2)) - start) as usize;
+        // The digits of an index in base 4 begin at its highest bit, so that blocks that share all but the last few of them have as
+        // many bits as are left over from base 4, and an even number.
+        let bits = samples.min(LANES.ilog2() - samples % 2);
+        let lanes = 1 << bits;
+        let mut room = Aligned([[[0.0; LANES]; 2]; PAIRS]);
+        let mut side_by_side = Rows::new();
+        let mut curves = [const { None }; PAIRS];
+        let mut image = None;
+        let (mut index, mut out) = (block.first, &mut *block.out);
         while !out.is_empty() {
-            // The rows of one image after the other.
-            let left = size - (index & (size - 1));
-            let room = usize::try_from(left).unwrap_or(usize::MAX);
-            let (now, later) = out.split_at_mut(out.len().min(room.saturating_mul(block.width)));
-            for pair in start / 2..end.div_ceil(2) {
-                let axes = start.max(2 * pair)..end.min((2 * pair).saturating_add(2));
-                let pair = self.pair(index >> self.image.samples, pair);
-                for (row, sample) in now.chunks_exact_mut(block.width).zip(index..) {
-                    let place = pair.place(sample);
-                    for dimension in axes.clone() {
-                        row[(dimension - start) as usize] = pair.coordinate(place, dimension % 2);
-                    }
+            if image != Some(index >> samples) {
+                image = Some(index >> samples);
+                for (place, pair) in curves.iter_mut().zip(pairs.clone()) {
+                    *place = Some(self.pair(index >> samples, pair));
                 }
             }
-            index = index.wrapping_add(left);
+            for (pair, room) in curves.iter().flatten().zip(&mut room.0) {
+                pair.write(index >> bits, samples - bits, bits, room);
+            }
+            let place = (index % lanes) as usize;
+            let now = (lanes as usize - place).min(out.len() / block.width);
+            let (rows, later) = out.split_at_mut(now * block.width);
+            let rows = rows.chunks_exact_mut(block.width);
+            let axes = room.0.as_flattened();
+            let coordinates =
+                core::array::from_fn(|axis| &axes[(axis + skipped).min(axes.len() - 1)]);
+            side_by_side.write(coordinates, place, rows, columns.clone());
+            index = index.wrapping_add(now as u64);
             out = later;
         }
     }
@@ -150,34 +183,58 @@ impl PointSet for BlueNoisePixel {
 
 /// A net in two dimensions, and the place of a pixel in it.
 struct Pair {
-    matrices: &'static [Columns],
-    samples: u32,
-    key: u64,
-    pixel: Curve,
+    /// What selects the scrambles.
+    axes: [u64; 2],
+    /// Up to the pixel.
+    curve: Curve,
 }
 
 impl Pair {
-    /// The place in the net of a sample of the pixel: only the lowest bits of the index count.
-    #[inline]
-    fn place(&self, index: u64) -> u64 {
-        self.pixel
-            .followed_by(index, self.samples, self.key)
-            .shuffled
+    #[inline(always)]
+    fn coordinate(&self, place: u64, axis: usize) -> f64 {
+        let digits = if axis == 0 { place } else { pascal(place) };
+        unit(scramble_reversed(digits, self.axes[axis]))
     }
 
-    #[inline]
-    fn coordinate(&self, place: u64, axis: u32) -> f64 {
-        unit(scramble_reversed(
-            multiplied(&self.matrices[axis as usize], place),
-            hash(!self.key, u64::from(axis)),
-        ))
+    /// Writes the coordinates of all samples with the lowest `above` bits of `index` before their last `bits` bits.
+    #[inline(always)]
+    fn write(&self, index: u64, above: u32, bits: u32, room: &mut [[f64; LANES]; 2]) {
+        /// As many as are computed in any case.
+        const GROUP: usize = 8;
+        let curve = self.curve.followed_by(index, above);
+        let places = curve.followed_by_all(bits);
+        let groups = (1_usize << bits).div_ceil(GROUP);
+        for (axis, room) in room.iter_mut().enumerate() {
+            let places = places.as_chunks::<GROUP>().0.iter().take(groups);
+            for (us, places) in room.as_chunks_mut::<GROUP>().0.iter_mut().zip(places) {
+                for (u, &place) in us.iter_mut().zip(places) {
+                    *u = self.coordinate(curve.shuffled << bits | u64::from(place), axis);
+                }
+            }
+        }
     }
+}
+
+/// The second dimension of Sobol's points: the digits that its generator matrix, Pascal's triangle modulo 2, makes of the
+/// bits of an index, the first digit in the lowest bit. The first dimension has the bits themselves.
+///
+/// The triangle is made of four squares, three of which are alike and one is 0; so are they in turn.
+#[inline(always)]
+const fn pascal(mut word: u64) -> u64 {
+    word ^= word >> 32;
+    word ^= word >> 16 & 0x0000_ffff_0000_ffff;
+    word ^= word >> 8 & 0x00ff_00ff_00ff_00ff;
+    word ^= word >> 4 & 0x0f0f_0f0f_0f0f_0f0f;
+    word ^= word >> 2 & 0x3333_3333_3333_3333;
+    word ^ word >> 1 & 0x5555_5555_5555_5555
 }
 
 /// A place on the Morton curve whose digits in base 4 are permuted, each by a permutation that those above it choose: the four
 /// squares that make a larger one, and the samples of a pixel, come in an order of their own everywhere.
 #[derive(Clone, Copy)]
 struct Curve {
+    /// What selects the permutations.
+    prepared: u64,
     /// The digits as they were, after a one that tells how many they are.
     digits: u64,
     shuffled: u64,
@@ -185,34 +242,121 @@ struct Curve {
 
 impl Curve {
     /// Before the first digit.
-    const START: Self = Self {
-        digits: 1,
-        shuffled: 0,
-    };
-
-    /// With the lowest `bits` bits of `word` as its next digits. Where their number is odd, the last digit is in base 2.
-    #[inline]
-    fn followed_by(self, word: u64, bits: u32, key: u64) -> Self {
-        let Self {
-            mut digits,
-            mut shuffled,
-        } = self;
-        let mut left = bits;
-        while left > 0 {
-            let width = left.min(2);
-            left -= width;
-            let digit = word >> left & ((1 << width) - 1);
-            let image = permute(digit, 1 << width, hash(key, digits));
-            shuffled = shuffled << width | image;
-            digits = digits << width | digit;
+    #[inline(always)]
+    const fn new(key: u64) -> Self {
+        Self {
+            prepared: prepare(key),
+            digits: 1,
+            shuffled: 0,
         }
-        Self { digits, shuffled }
+    }
+
+    /// With the lowest `bits` bits of `word`, 32 at most, as its next digits. Where their number is odd, the last digit is in base 2.
+    #[inline(always)]
+    fn followed_by(self, word: u64, bits: u32) -> Self {
+        let below = |bits: u32| (1_u64 << bits) - 1;
+        let word = word & below(bits);
+        let before = |left: u32| self.digits << (bits - left) | word >> left;
+        let mut shuffled = self.shuffled << bits;
+        // From the last digit on; all of them are independent of one another.
+        let mut left = bits % 2;
+        if left == 1 {
+            shuffled |= permute_2(self.order(before(1)), word & 1);
+        }
+        while left < bits {
+            let image = permute_4(self.order(before(left + 2)), word >> left & 3);
+            shuffled |= image << left;
+            left += 2;
+        }
+        Self {
+            digits: self.digits << bits | word,
+            shuffled,
+            ..self
+        }
+    }
+
+    /// What all numbers of `bits` bits, those of a lane at most, become as the next digits.
+    #[inline(always)]
+    fn followed_by_all(self, bits: u32) -> [u16; LANES] {
+        let mut images = [0; LANES];
+        let mut done = 0;
+        while done + 1 < bits {
+            let words = self.orders(done);
+            let mut fours = [0; NODES];
+            for ((four, &image), &word) in fours.iter_mut().zip(&images).zip(&words) {
+                let image = |digit| u64::from(image) << 2 | permute_4(word, digit);
+                *four = image(0) | image(1) << 16 | image(2) << 32 | image(3) << 48;
+            }
+            for (images, four) in images.as_chunks_mut().0.iter_mut().zip(fours) {
+                *images = [0, 16, 32, 48].map(|shift| (four >> shift) as u16);
+            }
+            done += 2;
+        }
+        if done < bits {
+            let nodes = images;
+            let twos = images.as_chunks_mut().0.iter_mut();
+            for ((two, image), word) in twos.zip(nodes).zip(self.orders(done)) {
+                *two = [0, 1].map(|digit| image << 1 | permute_2(word, digit) as u16);
+            }
+        }
+        images
+    }
+
+    /// What chooses the permutations of the digits after all numbers of `bits` bits that may come next; and some more, so that
+    /// the compiler knows how many they are.
+    #[inline(always)]
+    fn orders(self, bits: u32) -> [u64; NODES] {
+        let mut words = [0; NODES];
+        for (word, node) in words.iter_mut().zip(0..) {
+            *word = self.order(self.digits << bits | node);
+        }
+        words
+    }
+
+    /// What chooses the permutation of the digit that comes after the `digits`.
+    #[inline(always)]
+    const fn order(self, digits: u64) -> u64 {
+        prepare(hash_prepared(self.prepared, digits))
+    }
+}
+
+/// The image of `digit`, below 4, under the permutation that [`permute`](crate::hash::permute) makes of a key that `word` is prepared from:
+/// the same three swaps, without a branch.
+#[inline(always)]
+const fn permute_4(word: u64, digit: u64) -> u64 {
+    // 2^64 / 3, rounded up, and its double.
+    const THIRDS: [u64; 2] = [0x5555_5555_5555_5556, 0xaaaa_aaaa_aaaa_aaab];
+    let image = swapped(digit, 3, word >> 62);
+    let word = word << 2;
+    let third = (word >= THIRDS[0]) as u64 + (word >= THIRDS[1]) as u64;
+    let image = swapped(image, 2, third);
+    swapped(image, 1, word.wrapping_mul(3) >> 63)
+}
+
+/// The same for digits below 2.
+#[inline(always)]
+const fn permute_2(word: u64, digit: u64) -> u64 {
+    swapped(digit, 1, word >> 63)
+}
+
+/// Where a number is after `last` and `place`, which is no larger, have changed places.
+#[inline(always)]
+const fn swapped(number: u64, last: u64, place: u64) -> u64 {
+    if number == last {
+        place
+    } else if number == place {
+        last
+    } else {
+        number
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hash::permute;
+    use crate::points::scramble::DigitOrder;
+    use crate::points::sobol::{multiplied, table};
 
     #[test]
     fn every_square_of_pixels_has_a_net() {
@@ -252,6 +396,27 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn digits_are_permuted_as_by_the_loop() {
+        for key in (0..200).map(|key| hash(3, key)) {
+            for digit in 0..4 {
+                assert_eq!(permute_4(prepare(key), digit), permute(digit, 4, key));
+            }
+            for digit in 0..2 {
+                assert_eq!(permute_2(prepare(key), digit), permute(digit, 2, key));
+            }
+        }
+    }
+
+    #[test]
+    fn the_axes_are_those_of_sobol() {
+        let sobol = table(2, DigitOrder::FirstLowest);
+        for word in (0..200).map(|word| hash(4, word)) {
+            assert_eq!(multiplied(&sobol[0], word), word);
+            assert_eq!(multiplied(&sobol[1], word), pascal(word));
         }
     }
 

@@ -2,14 +2,11 @@
 
 use core::ops::Range;
 
-use super::block::{Block, vectorised};
+use super::block::{Aligned, Block, Rows, TOGETHER, vectorised};
 use super::{PointSet, fill_singly};
 
 /// Points whose coordinates in one dimension are computed together.
 pub(super) const CHUNK: usize = 64;
-
-/// Dimensions that are computed before their coordinates are put in their places: those of one line of the cache.
-const TOGETHER: usize = 8;
 
 /// Fewer points are not worth preparing a column for.
 const FEWEST: u64 = 16;
@@ -72,7 +69,8 @@ fn write<C: Column>(
     start: usize,
 ) {
     let last = (size - 1) as u32;
-    let mut room = [[0.0; CHUNK]; TOGETHER];
+    let mut room = Aligned([[0.0; CHUNK]; TOGETHER]);
+    let mut side_by_side = Rows::new();
     for (place, out) in (place..).step_by(CHUNK).zip(out.chunks_mut(CHUNK * width)) {
         let mut places = [0; CHUNK];
         for (next, lane) in places.iter_mut().zip(0..) {
@@ -80,14 +78,11 @@ fn write<C: Column>(
             *next = (place as u32).saturating_add(lane).min(last);
         }
         let mut count = 0;
-        for (column, room) in columns.iter().flatten().zip(&mut room) {
+        for (column, room) in columns.iter().flatten().zip(&mut room.0) {
             column.write(&places, room);
             count += 1;
         }
-        for (lane, row) in out.chunks_exact_mut(width).enumerate() {
-            for (u, room) in row[start..start + count].iter_mut().zip(&room) {
-                *u = room[lane];
-            }
-        }
+        let rows = out.chunks_exact_mut(width);
+        side_by_side.write(room.0.each_ref(), 0, rows, start..start + count);
     }
 }

@@ -4,8 +4,8 @@ use core::ops::Range;
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-use super::block::{Block, vectorised};
-use super::digits::{Base, CHUNK, CHUNKS, Column};
+use super::block::{Aligned, Block, Rows, TOGETHER, vectorised};
+use super::digits::{Base, CHUNK, CHUNKS};
 use super::scramble::{DigitScramble, Plain};
 use super::{Independent, PointSet, fill_singly};
 use crate::Error;
@@ -129,21 +129,8 @@ impl<S: DigitScramble> PointSet for Halton<S> {
     }
 }
 
-/// Dimensions that are computed before their coordinates are put in their places: those of one line of the cache, so that
-/// no line is written twice.
-const TOGETHER: usize = 8;
-
-/// Points that are.
+/// Points whose coordinates are computed before they are put in their places.
 const POINTS: usize = CHUNKS * CHUNK;
-
-/// Where coordinates are until they are put in their places. No vector of them is in two lines of the cache.
-#[repr(align(64))]
-struct Room {
-    columns: [Column; TOGETHER],
-    /// The coordinates of a chunk of points, side by side: in the first and in the last half of the dimensions.
-    left: [[f64; TOGETHER / 2]; CHUNK],
-    right: [[f64; TOGETHER / 2]; CHUNK],
-}
 
 impl<S: DigitScramble> Halton<S> {
     /// The index that the point `first` of a block of `length` coordinates has in the whole sequence, if blocks are worth it.
@@ -191,11 +178,8 @@ impl<S: DigitScramble> Halton<S> {
     #[inline(always)]
     fn fill_tile(&self, block: &mut Block<'_>, dimension: u32, columns: Range<usize>) {
         let count = block.count();
-        let mut room = Room {
-            columns: [[[0.0; CHUNK]; CHUNKS]; TOGETHER],
-            left: [[0.0; TOGETHER / 2]; CHUNK],
-            right: [[0.0; TOGETHER / 2]; CHUNK],
-        };
+        let mut room = Aligned([[[0.0; CHUNK]; CHUNKS]; TOGETHER]);
+        let mut side_by_side = Rows::new();
         let mut keys = [0; TOGETHER];
         let mut tables = [const { None }; TOGETHER];
         let places = dimension as usize..dimension as usize + columns.len();
@@ -208,7 +192,7 @@ impl<S: DigitScramble> Halton<S> {
             let points = out.len() / block.width;
             for (lane, place) in places.clone().enumerate() {
                 let (base, key) = (&self.bases[place], keys[lane]);
-                let column = &mut room.columns[lane];
+                let column = &mut room.0[lane];
                 if let Some(table) = &tables[lane] {
                     base.inverses(&self.scramble, key, table, index, points, column);
                 } else {
@@ -219,28 +203,8 @@ impl<S: DigitScramble> Halton<S> {
             }
             let mut rows = out.chunks_exact_mut(block.width);
             for chunk in 0..points.div_ceil(CHUNK) {
-                let [a, b, c, d, e, f, g, h] = room.columns.each_ref().map(|column| &column[chunk]);
-                for (place, four) in room.left.iter_mut().enumerate() {
-                    *four = [a[place], b[place], c[place], d[place]];
-                }
-                for (place, four) in room.right.iter_mut().enumerate() {
-                    *four = [e[place], f[place], g[place], h[place]];
-                }
-                let coordinates = room.left.iter().zip(&room.right).zip(&mut rows);
-                if columns.len() == TOGETHER {
-                    for ((left, right), row) in coordinates {
-                        let row = &mut row[columns.start..][..TOGETHER];
-                        row[..4].copy_from_slice(left);
-                        row[4..].copy_from_slice(right);
-                    }
-                } else {
-                    for ((left, right), row) in coordinates {
-                        let coordinates = left.iter().chain(right);
-                        for (u, &coordinate) in row[columns.clone()].iter_mut().zip(coordinates) {
-                            *u = coordinate;
-                        }
-                    }
-                }
+                let coordinates = room.0.each_ref().map(|column| &column[chunk]);
+                side_by_side.write(coordinates, 0, rows.by_ref().take(CHUNK), columns.clone());
             }
             index += points as u64;
         }

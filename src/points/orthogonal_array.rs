@@ -5,7 +5,7 @@ use core::ops::Range;
 use super::finite::{self, CHUNK, Column, Finite};
 use super::halton::primes_up_to;
 use super::multi_jittered::rounded_root;
-use super::permutation::{Permutation, permute_each};
+use super::permutation::Permutation;
 use super::strata::{Divisor, within, write_within};
 use super::{Independent, PointSet};
 use crate::Error;
@@ -101,7 +101,8 @@ impl PointSet for OrthogonalArray {
         let (level, rank) = if x < p { ((a * x + b) % p, a) } else { (a, b) };
         let level = permute(level, p, key);
         // Each level has an order of its own for its points.
-        let rank = permute(rank, p, hash(key, level));
+        let line = Line::new(hash(key, level), p);
+        let rank = (line.slope * rank + line.start) % p;
         within(level * p + rank, count, unit(hash(!key, index)))
     }
 
@@ -137,6 +138,27 @@ impl Finite for OrthogonalArray {
     }
 }
 
+/// A random order of the numbers below a prime: `slope * number + start`, modulo the prime.
+///
+/// Such lines bring any two of the numbers to all pairs of places equally often, as all orders together do; variances do not tell
+/// them apart.
+struct Line {
+    /// Not 0.
+    slope: u64,
+    start: u64,
+}
+
+impl Line {
+    /// The one that a well mixed word selects, for a prime below 2^32.
+    #[inline(always)]
+    const fn new(word: u64, prime: u64) -> Self {
+        Self {
+            slope: 1 + ((word >> 32) * (prime - 1) >> 32),
+            start: (word & 0xffff_ffff) * prime >> 32,
+        }
+    }
+}
+
 /// What the points of one set have in common in one dimension.
 pub(super) struct Lines {
     levels: u64,
@@ -166,9 +188,11 @@ impl Column for Lines {
             core::mem::swap(&mut ranks, &mut strata);
         }
         self.order.apply(&mut strata);
-        let keys = strata.map(|level| hash_prepared(self.ranks, level.into()));
-        permute_each(&mut ranks, self.levels, &keys);
         for (stratum, rank) in strata.iter_mut().zip(ranks) {
+            let line = Line::new(hash_prepared(self.ranks, (*stratum).into()), self.levels);
+            let rank = divisor
+                .divide(line.slope as u32 * rank + line.start as u32)
+                .rest;
             *stratum = *stratum * levels + rank;
         }
         write_within(
@@ -192,6 +216,36 @@ mod tests {
         {
             let points = OrthogonalArray::new(count, dimensions, 1).unwrap();
             assert_eq!(points.size(), Some(size), "{count} {dimensions}");
+        }
+    }
+
+    #[test]
+    fn lines_order_pairs_evenly() {
+        // Over 100 000 words all ordered pairs of places must come equally often. Chi-square with n (n - 1) - 1 degrees of freedom; the
+        // mean and 6 standard deviations are passed with a probability below 1e-6, in each of 6 cases.
+        const WORDS: u64 = 100_000;
+        for (prime, i, j) in [
+            (2, 0, 1),
+            (3, 0, 2),
+            (5, 4, 1),
+            (13, 0, 1),
+            (31, 30, 0),
+            (61, 7, 20),
+        ] {
+            let mut histogram = vec![0_u32; (prime * prime) as usize];
+            for word in 0..WORDS {
+                let line = Line::new(hash(8, word), prime);
+                let [i, j] = [i, j].map(|rank| (line.slope * rank + line.start) % prime);
+                histogram[(i * prime + j) as usize] += 1;
+            }
+            let pairs = (prime * (prime - 1)) as f64;
+            let expected = WORDS as f64 / pairs;
+            let chi2: f64 = (0..prime * prime)
+                .filter(|cell| cell / prime != cell % prime)
+                .map(|cell| (f64::from(histogram[cell as usize]) - expected).powi(2) / expected)
+                .sum();
+            let bound = pairs - 1.0 + 6.0 * (2.0 * pairs).sqrt();
+            assert!(chi2 < bound, "{prime}: {chi2} >= {bound}");
         }
     }
 

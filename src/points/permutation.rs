@@ -50,39 +50,15 @@ impl Permutation {
                 for number in &mut *numbers {
                     *number = walk.step(*number, bits);
                 }
-                walk_on(numbers, self.count, |_, number| walk.step(number, bits));
+                walk_on(numbers, self.count, |number| walk.step(number, bits));
             }
         }
     }
 }
 
-/// Puts the images of `numbers`, below `count`, in their places, each under the permutation of `0..count` that the key
-/// in its place selects.
-#[inline(always)]
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "images are below the count"
-)]
-pub(super) fn permute_each(numbers: &mut [u32; CHUNK], count: u64, keys: &[u64; CHUNK]) {
-    debug_assert!(count <= 1 << 32);
-    if count <= FEW {
-        for (number, &key) in numbers.iter_mut().zip(keys) {
-            *number = permute(u64::from(*number), count, key) as u32;
-        }
-        return;
-    }
-    let bits = Bits::of(count);
-    for (number, &key) in numbers.iter_mut().zip(keys) {
-        *number = Walk::new(key).step(*number, bits);
-    }
-    walk_on(numbers, count, |lane, number| {
-        Walk::new(keys[lane]).step(number, bits)
-    });
-}
-
 /// Takes the numbers past the count on along their cycles, until all are below it.
 #[inline(always)]
-fn walk_on(numbers: &mut [u32; CHUNK], count: u64, step: impl Fn(usize, u32) -> u32) {
+fn walk_on(numbers: &mut [u32; CHUNK], count: u64, step: impl Fn(u32) -> u32) {
     if count.is_power_of_two() {
         return;
     }
@@ -96,7 +72,7 @@ fn walk_on(numbers: &mut [u32; CHUNK], count: u64, step: impl Fn(usize, u32) -> 
         let mut still = 0;
         for place in 0..left {
             let lane = lanes[place];
-            numbers[lane] = step(lane, numbers[lane]);
+            numbers[lane] = step(numbers[lane]);
             lanes[still] = lane;
             still += usize::from(u64::from(numbers[lane]) >= count);
         }
@@ -181,18 +157,11 @@ mod tests {
                 let words: [u64; CHUNK] =
                     core::array::from_fn(|lane| hash(key, lane as u64) % count);
                 let numbers = words.map(|word| u32::try_from(word).unwrap());
-                let keys = words.map(|word| hash(9, word));
 
                 let mut same = numbers;
                 Permutation::new(count, key).apply(&mut same);
-                let mut own = numbers;
-                permute_each(&mut own, count, &keys);
                 for lane in 0..CHUNK {
                     assert_eq!(u64::from(same[lane]), permute(words[lane], count, key));
-                    assert_eq!(
-                        u64::from(own[lane]),
-                        permute(words[lane], count, keys[lane])
-                    );
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use super::block::{Block, vectorised};
+use super::block::{Aligned, Block, vectorised};
 use super::scramble::{BinaryScramble, Columns, DigitOrder, Plain};
 use super::{Independent, PointSet};
 use crate::Error;
@@ -168,6 +168,12 @@ const TILE: u32 = 64;
 /// Rows of lanes that share all but the low bits of their indices.
 const STEPS: usize = 8;
 
+/// Levels of bits above those whose changes are kept: others change once in 2^9 rows.
+const LEAPS: usize = 6;
+
+/// A word for every lane.
+type Lanes = Aligned<[u64; LANES]>;
+
 impl<S: BinaryScramble> Sobol<S> {
     /// Writes the coordinates in `dimensions`, [`LANES`] at most, into the columns of the block from `start` on.
     ///
@@ -204,30 +210,59 @@ impl<S: BinaryScramble> Sobol<S> {
         }
 
         let matrices = &self.matrices[dimensions.start as usize..][..width];
-        let mut keys = [0; LANES];
-        let mut digits = [0; LANES];
-        let mut steps = [[0; LANES]; STEPS];
         // The number of the row of lanes: its first index without the bits that tell its points apart.
-        let mut number = (block.first + head as u64) >> bits;
-        let base = (number & !(STEPS as u64 - 1)) << bits;
-        for (lane, dimension) in (0..lanes).zip(dimensions.clone().cycle()) {
-            keys[lane] = self.scramble.key(dimension);
-            let index = base | (lane / width) as u64;
-            digits[lane] = multiplied(&matrices[lane % width], index);
+        let first = (block.first + head as u64) >> bits;
+        let base = (first & !(STEPS as u64 - 1)) << bits;
+        let mut keys = Aligned([0; LANES]);
+        let mut digits = Aligned([0; LANES]);
+        for (lane, dimension) in dimensions.enumerate() {
+            keys.0[lane] = self.scramble.key(dimension);
+            digits.0[lane] = multiplied(&matrices[lane], base);
         }
+        for bit in 0..bits {
+            let (done, next) = (width << bit, width << (bit + 1));
+            keys.0.copy_within(..done, done);
+            digits.0.copy_within(..done, done);
+            toggle(&mut digits.0[done..next], matrices, bit, 1);
+        }
+        let mut steps = [Aligned([0; LANES]); STEPS];
         for bit in 0..STEPS.trailing_zeros() {
             let (done, next) = steps.split_at_mut(1 << bit);
             for (done, next) in done.iter().zip(next) {
                 *next = *done;
-                toggle(&mut next[..lanes], matrices, bits + bit, 1);
+                toggle(&mut next.0[..lanes], matrices, bits + bit, 1);
             }
         }
+        let lowest = bits + STEPS.trailing_zeros();
+        let mut leaps = [Aligned([0; LANES]); LEAPS];
+        let mut made = 0;
 
         let span = lanes + (stride - width) * usize::from(together == 1);
         let rows = block.out[head * stride + start..]
             .chunks_mut(span)
             .take(whole);
-        for row in rows {
+        for (number, row) in (first..=u64::MAX).zip(rows) {
+            if number.is_multiple_of(STEPS as u64) && number > first {
+                // The bits that counting up has changed, above those of the steps.
+                let level = (number / STEPS as u64).trailing_zeros() as usize;
+                while made <= level && made < LEAPS {
+                    leaps[made] = leaps[made.saturating_sub(1)];
+                    toggle(
+                        &mut leaps[made].0[..lanes],
+                        matrices,
+                        lowest + made as u32,
+                        1,
+                    );
+                    made += 1;
+                }
+                if let Some(leap) = leaps.get(level) {
+                    for (digits, leap) in digits.0.iter_mut().zip(&leap.0) {
+                        *digits ^= leap;
+                    }
+                } else {
+                    toggle(&mut digits.0[..lanes], matrices, lowest, level as u32 + 1);
+                }
+            }
             let step = &steps[number as usize % STEPS];
             // All lanes in any case: their number is one that the compiler knows.
             if let (LANES, Some(row)) = (lanes, row.first_chunk_mut()) {
@@ -237,32 +272,15 @@ impl<S: BinaryScramble> Sobol<S> {
                 self.write(&keys, &digits, step, &mut all);
                 row[..lanes].copy_from_slice(&all[..lanes]);
             }
-            number = number.wrapping_add(1);
-            if number.is_multiple_of(STEPS as u64) {
-                // The bits that counting up has changed, above those of the steps.
-                let changed = (number ^ number.wrapping_sub(1)) >> STEPS.trailing_zeros();
-                let lowest = bits + STEPS.trailing_zeros();
-                toggle(
-                    &mut digits[..lanes],
-                    matrices,
-                    lowest,
-                    changed.trailing_ones(),
-                );
-            }
         }
     }
 }
 
 impl<S: BinaryScramble> Sobol<S> {
     #[inline(always)]
-    fn write(
-        &self,
-        keys: &[u64; LANES],
-        digits: &[u64; LANES],
-        step: &[u64; LANES],
-        row: &mut [f64; LANES],
-    ) {
-        for (((u, step), &key), digits) in row.iter_mut().zip(step).zip(keys).zip(digits) {
+    fn write(&self, keys: &Lanes, digits: &Lanes, step: &Lanes, row: &mut [f64; LANES]) {
+        let words = step.0.iter().zip(&keys.0).zip(&digits.0);
+        for (u, ((step, &key), digits)) in row.iter_mut().zip(words) {
             *u = unit(self.scramble.scramble(key, digits ^ step));
         }
     }

@@ -5,17 +5,18 @@ use super::fourier::Correlation;
 /// The components for `count` points in `dimensions` dimensions: each in turn is the one that makes the squared worst-case
 /// error the smallest. Both arguments are 1 at least.
 pub(super) fn components(count: usize, dimensions: u32) -> Vec<u64> {
-    components_by(Search::new(count), count, dimensions)
+    let weights = (1..=dimensions).map(|dimension| 1.0 / f64::from(dimension).powi(2));
+    components_by(Search::new(count), count, weights)
 }
 
-fn components_by(search: Search, count: usize, dimensions: u32) -> Vec<u64> {
+/// One component for each of the weights.
+fn components_by(search: Search, count: usize, weights: impl IntoIterator<Item = f64>) -> Vec<u64> {
     let kernel = kernel(count);
     let mut products = vec![1.0; count];
     let mut vector = Vec::new();
-    for dimension in 1..=dimensions {
-        let weight = 1.0 / f64::from(dimension).powi(2);
+    for weight in weights {
         // In one dimension all are equally good.
-        let best = if dimension == 1 {
+        let best = if vector.is_empty() {
             1
         } else {
             search.best(&kernel, &products)
@@ -232,16 +233,76 @@ mod tests {
     fn correlations_find_the_components_that_the_plain_search_finds() {
         let primes = [2, 3, 5, 7, 11, 13, 251, 509, 1021];
         let powers = [4, 8, 9, 16, 25, 27, 49, 64, 243, 343, 625, 1024];
+        let weights = || (1..=12).map(|dimension| 1.0 / f64::from(dimension * dimension));
         for count in primes.into_iter().chain(powers) {
             let orbits = Orbits::new(count).expect("a power of a prime");
             assert_eq!(
-                components_by(Search::Orbits(orbits), count, 12),
-                components_by(Search::All, count, 12),
+                components_by(Search::Orbits(orbits), count, weights()),
+                components_by(Search::All, count, weights()),
                 "{count}"
             );
         }
         for count in [1, 6, 12, 1000, 1023] {
             assert!(Orbits::new(count).is_none(), "{count}");
         }
+    }
+
+    /// Vectors that the authors of the fast construction have published a program for: of its output, the first 20 components for a
+    /// few numbers of points, all weights being 1/100. As distributed with pySecDec's integrator: cbcpt_dn1_100 of
+    /// <https://github.com/mppmu/qmc>; Borowka et al. (2019), <https://doi.org/10.1016/j.cpc.2019.02.015>.
+    const PUBLISHED: [(usize, [u64; 20]); 3] = [
+        (
+            1021,
+            [
+                1, 374, 421, 220, 482, 449, 309, 72, 382, 152, 328, 247, 212, 414, 119, 503, 196,
+                438, 418, 452,
+            ],
+        ),
+        (
+            10_061,
+            [
+                1, 3850, 2758, 1065, 676, 4224, 1699, 4881, 3515, 2413, 2652, 1876, 4935, 4408,
+                2057, 644, 4328, 4629, 2145, 2634,
+            ],
+        ),
+        (
+            28_669,
+            [
+                1, 10974, 7676, 11986, 8567, 3929, 5838, 2524, 9098, 4861, 4326, 6173, 6389, 2145,
+                7490, 3546, 12311, 8673, 3957, 10411,
+            ],
+        ),
+    ];
+
+    #[test]
+    fn published_vectors_are_found() {
+        const WEIGHT: f64 = 0.01;
+        for (count, published) in PUBLISHED {
+            let found = components_by(Search::new(count), count, [WEIGHT; 20]);
+            // Where components are equally good, the other program took another one.
+            for dimensions in 1..=20 {
+                let [theirs, ours] = [&published[..], &found]
+                    .map(|vector| squared_error(count, &vector[..dimensions], WEIGHT));
+                assert!(
+                    (ours - theirs).abs() <= 1e-9 * theirs,
+                    "{count}: {ours} for {theirs}"
+                );
+            }
+            if count == 10_061 {
+                assert_eq!(found, published);
+            }
+        }
+    }
+
+    /// Point by point, by its definition.
+    fn squared_error(count: usize, vector: &[u64], weight: f64) -> f64 {
+        let term = |index: u64| {
+            let factor = |component: &u64| {
+                let place = index * component % count as u64;
+                1.0 + weight * bernoulli_2(place as f64 / count as f64)
+            };
+            vector.iter().map(factor).product::<f64>() - 1.0
+        };
+        (0..count as u64).map(term).sum::<f64>() / count as f64
     }
 }

@@ -21,6 +21,7 @@ mod bsdf;
 mod document;
 mod emitter;
 mod error;
+mod field_of_view;
 mod film;
 mod integrator;
 mod load;
@@ -42,8 +43,9 @@ mod upgrade;
 use std::path::Path;
 
 pub use bsdf::{Bsdf, Conductor, Dielectric, Distribution, Perturbed, Plastic, Roughness};
-pub use emitter::{Emitter, Spot};
+pub use emitter::{Emitter, Projector, Source, Spot};
 pub use error::{Place, SceneError};
+pub use field_of_view::FieldOfView;
 pub use film::{Crop, Film, Filter};
 pub use integrator::{Integrator, Techniques};
 pub use load::{Instance, Loaded};

@@ -83,4 +83,4 @@ pub use recursive::{Direct, Ending, Recursive, RecursivePixel};
 pub use render::{Pixel, Unfinished, View};
 pub use scene::{Instances, Object, Scene, Vertex};
 pub use segment::Segment;
-pub use shading::{Detail, Shading};
+pub use shading::{Detail, Facet, Shading};

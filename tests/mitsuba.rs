@@ -12,8 +12,8 @@ mod meshes;
 mod mutated;
 
 use estimand::mitsuba::{
-    BitmapFilter, Bsdf, Crop, Description, Distribution, Emitter, Filter, Geometry, Integrator,
-    Points, Projection, SceneError, Texture, Wrap, read,
+    BitmapFilter, Bsdf, Crop, Description, Distribution, Filter, Geometry, Integrator, Points,
+    Projection, SceneError, Source, Texture, Wrap, read,
 };
 use files::Folder;
 use glam::{DMat4, DVec2, DVec3};
@@ -128,14 +128,14 @@ fn vectors_and_colours_have_several_spellings() {
             let light = seen(&format!(
                 r#"<emitter type="point">{position}{intensity}</emitter>"#
             ));
-            assert_eq!(
-                light.unwrap().emitters,
-                [Emitter::Point {
-                    position: DVec3::new(1.0, 2.0, 3.0),
-                    intensity: DVec3::splat(2.0)
-                }],
-                "{position} {intensity}"
-            );
+            let [emitter] = &light.unwrap().emitters[..] else {
+                panic!("one emitter");
+            };
+            let expected = Source::Point {
+                position: DVec3::new(1.0, 2.0, 3.0),
+                intensity: DVec3::splat(2.0),
+            };
+            assert_eq!(emitter.source, expected, "{position} {intensity}");
         }
     }
 }
@@ -404,4 +404,48 @@ fn no_file_is_too_deep() {
         r#"{SENSOR}{wide}<bsdf type="null" id="b13"/><shape type="cube"><ref id="b0"/></shape>"#
     );
     assert!(read(folder.scene(&wide), &[]).is_ok());
+}
+
+/// Errors name the element that they are about.
+#[test]
+fn techniques_must_find_the_light() {
+    for (scene, expected) in [
+        (
+            r#"<integrator type="direct"><integer name="emitter_samples" value="0"/></integrator><emitter type="point"/>"#,
+            "<integrator type=\"direct\">: without `emitter_samples`",
+        ),
+        (
+            r#"<integrator type="direct"><integer name="bsdf_samples" value="0"/></integrator>
+            <shape type="sphere"><bsdf type="conductor"/></shape>"#,
+            "<integrator type=\"direct\">: without `bsdf_samples`",
+        ),
+        (
+            r#"<integrator type="volpath"><integer name="max_depth" value="3"/></integrator>
+            <shape type="sphere"><bsdf type="null"/></shape>"#,
+            "<integrator type=\"volpath\">: without media",
+        ),
+    ] {
+        let message = message(seen(scene));
+        assert!(message.contains(expected), "{message}");
+    }
+}
+
+/// Mitsuba 3.9.1: `ScalarTransform4f().rotate([0.4, 0.8, 0.3], 40)`.
+#[test]
+fn axes_of_rotations_are_taken_as_they_are() {
+    let scene = seen(
+        r#"<shape type="cube"><transform name="to_world">
+            <rotate value="0.4 0.8 0.3" angle="40"/>
+        </transform></shape>"#,
+    );
+    let to_world: DMat4 = scene.unwrap().shapes[0].to_world;
+    #[rustfmt::skip]
+    let rows = [
+        0.803_477_35, -0.117_970_50, 0.542_304_75, 0.0,
+        0.267_702_07, 0.915_776_01, -0.200_965_70, 0.0,
+        -0.486_155_39, 0.313_264_37, 0.787_100_43, 0.0,
+        0.0, 0.0, 0.0, 1.0,
+    ];
+    let expected = DMat4::from_cols_array(&rows).transpose();
+    assert!(to_world.abs_diff_eq(expected, 1e-6), "{to_world}");
 }

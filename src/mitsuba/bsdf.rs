@@ -2,6 +2,7 @@
 
 mod conductors;
 mod ior;
+mod parts;
 
 use std::sync::Arc;
 

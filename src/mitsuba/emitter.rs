@@ -4,14 +4,24 @@ use std::path::PathBuf;
 
 use glam::{DMat4, DVec3};
 
-use super::error::SceneError;
+use super::error::{Place, SceneError};
+use super::field_of_view::FieldOfView;
 use super::query::Query;
 use super::spectrum::Role;
 use super::texture::Texture;
 
 /// Light that does not come from a shape.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Emitter {
+pub struct Emitter {
+    /// What it is.
+    pub source: Source,
+    /// Where it stands in the file.
+    pub place: Place,
+}
+
+/// What light that does not come from a shape is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
     /// `point`: from a point, in all directions alike.
     Point {
         /// The point.
@@ -21,6 +31,8 @@ pub enum Emitter {
     },
     /// `spot`: from a point, within a cone.
     Spot(Spot),
+    /// `projector`: from a point, a picture.
+    Projector(Projector),
     /// `directional`: from infinitely far away, in one direction.
     Directional {
         /// Where it goes, of length 1.
@@ -60,9 +72,23 @@ pub struct Spot {
     pub texture: Option<Texture>,
 }
 
+/// Light from a point that throws a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Projector {
+    /// From the coordinates of the light, which is at the origin and shines along +z with +x to the left and +y upwards, to the
+    /// scene's.
+    pub to_world: DMat4,
+    /// The picture: the radiance of a white plane at distance 1.
+    pub irradiance: Texture,
+    /// A factor.
+    pub scale: f64,
+    /// How wide the picture is.
+    pub field_of_view: FieldOfView,
+}
+
 pub(super) fn describe(mut query: Query<'_>) -> Result<Emitter, SceneError> {
     let q = &mut query;
-    let emitter = match q.plugin() {
+    let source = match q.plugin() {
         "point" => {
             let intensity = q.color("intensity", Role::Emission, 1.0)?;
             let position = match (q.vector("position")?, q.transform("to_world")?) {
@@ -72,12 +98,13 @@ pub(super) fn describe(mut query: Query<'_>) -> Result<Emitter, SceneError> {
                 }
                 _ => return Err(q.error("either `position` or `to_world`, not both")),
             };
-            Emitter::Point {
+            Source::Point {
                 position,
                 intensity,
             }
         }
-        "spot" => Emitter::Spot(spot(q)?),
+        "spot" => Source::Spot(spot(q)?),
+        "projector" => Source::Projector(projector(q)?),
         "directional" => {
             let irradiance = q.color("irradiance", Role::Emission, 1.0)?;
             let direction = match (q.vector("direction")?, q.transform("to_world")?) {
@@ -88,14 +115,14 @@ pub(super) fn describe(mut query: Query<'_>) -> Result<Emitter, SceneError> {
             let Some(direction) = direction.try_normalize() else {
                 return Err(q.error("the direction must not be zero"));
             };
-            Emitter::Directional {
+            Source::Directional {
                 direction,
                 irradiance,
             }
         }
         "constant" => {
             q.ignore(&["to_world"]);
-            Emitter::Constant {
+            Source::Constant {
                 radiance: q.color("radiance", Role::Emission, 1.0)?,
             }
         }
@@ -106,7 +133,7 @@ pub(super) fn describe(mut query: Query<'_>) -> Result<Emitter, SceneError> {
             if !(scale >= 0.0) {
                 return Err(q.error(format_args!("`scale` must not be negative; it is {scale}")));
             }
-            Emitter::EnvironmentMap {
+            Source::EnvironmentMap {
                 file: q.file("filename")?,
                 scale,
                 to_world: q.transform("to_world")?.unwrap_or_default(),
@@ -114,13 +141,27 @@ pub(super) fn describe(mut query: Query<'_>) -> Result<Emitter, SceneError> {
         }
         _ => {
             return Err(q.unsupported(
-                "there are point, spot, directional, constant and envmap, and area within a shape",
+                "there are point, spot, projector, directional, constant and envmap, and area within a shape",
             ));
         }
     };
     sampling_weight(q)?;
+    let place = q.place().clone();
     query.finish()?;
-    Ok(emitter)
+    Ok(Emitter { source, place })
+}
+
+fn projector(q: &mut Query<'_>) -> Result<Projector, SceneError> {
+    let scale = q.number("scale", 1.0)?;
+    if !(scale >= 0.0) {
+        return Err(q.error(format_args!("`scale` must not be negative; it is {scale}")));
+    }
+    Ok(Projector {
+        to_world: q.transform("to_world")?.unwrap_or_default(),
+        irradiance: q.texture_or("irradiance", Role::Emission, 1.0)?,
+        scale,
+        field_of_view: FieldOfView::ask(q)?,
+    })
 }
 
 fn spot(q: &mut Query<'_>) -> Result<Spot, SceneError> {
@@ -131,9 +172,10 @@ fn spot(q: &mut Query<'_>) -> Result<Spot, SceneError> {
     }
     let cutoff_angle = q.positive("cutoff_angle", 20.0)?;
     let beam_width = q.number("beam_width", 0.75 * cutoff_angle)?;
-    if !(cutoff_angle < 180.0 && beam_width >= 0.0 && beam_width <= cutoff_angle) {
+    let widest = if texture.is_some() { 90.0 } else { 180.0 };
+    if !(cutoff_angle < widest && beam_width >= 0.0 && beam_width <= cutoff_angle) {
         return Err(q.error(format_args!(
-            "`cutoff_angle` must be in (0, 180) and `beam_width` between 0 and it; they are {cutoff_angle} and {beam_width}"
+            "`cutoff_angle` must be in (0, 180), below 90 with a `texture`, and `beam_width` between 0 and it; they are {cutoff_angle} and {beam_width}"
         )));
     }
     Ok(Spot {

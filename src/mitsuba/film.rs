@@ -107,6 +107,11 @@ pub(super) fn describe(mut query: Query<'_>) -> Result<Film, SceneError> {
         [child] => filter(query.enter(child)?)?,
         _ => return Err(query.error("a film has one rfilter")),
     };
+    if sample_border && filter != Filter::Box {
+        return Err(query.error(
+            "`sample_border` is supported for the box filter only, which does without; leave it out",
+        ));
+    }
     query.finish()?;
     Ok(Film {
         width,

@@ -1,8 +1,11 @@
 //! Integrators: which paths of light count.
 
+use super::bsdf::Bsdf;
 use super::document::Kind;
-use super::error::SceneError;
+use super::emitter::{Emitter, Source};
+use super::error::{Place, SceneError};
 use super::query::Query;
+use super::shape::Shape;
 
 /// Which paths of light count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +18,9 @@ pub struct Integrator {
     pub hide_emitters: bool,
     /// How light is found.
     pub techniques: Techniques,
+    /// Whether surfaces count that light passes straight through: not in `volpath`, which is the same as `path` otherwise where
+    /// there are no media.
+    pub counts_passages: bool,
 }
 
 /// How light is found. One technique alone misses what the other alone can find.
@@ -36,8 +42,58 @@ impl Default for Integrator {
             rr_depth: 5,
             hide_emitters: false,
             techniques: Techniques::Both,
+            counts_passages: true,
         }
     }
+}
+
+impl Integrator {
+    /// That its techniques find the light of a scene. `place` is where it stands.
+    pub(super) fn check(
+        &self,
+        place: &Place,
+        shapes: &[Shape],
+        emitters: &[Emitter],
+    ) -> Result<(), SceneError> {
+        let is_point = |emitter: &Emitter| {
+            !matches!(
+                emitter.source,
+                Source::Constant { .. } | Source::EnvironmentMap { .. }
+            )
+        };
+        let passes = |shape: &Shape| {
+            let is = |bsdf: &Bsdf| matches!(bsdf, Bsdf::Null | Bsdf::Mask { .. });
+            shape.bsdf.any(&is)
+        };
+        if !self.counts_passages && self.max_depth.is_some() && shapes.iter().any(passes) {
+            return Err(place.error(
+                "without media volpath is path, but for passages through null and mask, which it does not count; use path",
+            ));
+        }
+        match self.techniques {
+            Techniques::Bsdfs if emitters.iter().any(is_point) => Err(place.error(
+                "without `emitter_samples` lights without size would be missed; leave them at 1",
+            )),
+            Techniques::Emitters if shapes.iter().any(|shape| is_delta(&shape.bsdf)) => Err(place
+                .error("without `bsdf_samples` mirrors and glass would be black; leave them at 1")),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Whether some of the light goes to single directions.
+fn is_delta(bsdf: &Bsdf) -> bool {
+    bsdf.any(&|bsdf| {
+        matches!(
+            bsdf,
+            Bsdf::Conductor(_)
+                | Bsdf::Dielectric(_)
+                | Bsdf::ThinDielectric(_)
+                | Bsdf::Plastic(_)
+                | Bsdf::Mask { .. }
+                | Bsdf::Null
+        )
+    })
 }
 
 pub(super) fn describe(mut query: Query<'_>) -> Result<Integrator, SceneError> {
@@ -45,7 +101,12 @@ pub(super) fn describe(mut query: Query<'_>) -> Result<Integrator, SceneError> {
     query.ignore(&["timeout", "block_size", "samples_per_pass"]);
     let hide_emitters = query.flag("hide_emitters", false)?;
     let integrator = match query.plugin() {
-        "path" => path(&mut query, hide_emitters)?,
+        // What a particle tracer finds from the other end are the same paths.
+        "path" | "ptracer" => path(&mut query, hide_emitters)?,
+        "volpath" | "volpathmis" => Integrator {
+            counts_passages: false,
+            ..path(&mut query, hide_emitters)?
+        },
         "direct" => {
             let both: u32 = query.count("shading_samples", 1)?;
             let emitter = query.count("emitter_samples", both)?;
@@ -69,7 +130,7 @@ pub(super) fn describe(mut query: Query<'_>) -> Result<Integrator, SceneError> {
             };
             describe(query.enter(nested)?)?
         }
-        _ => return Err(query.unsupported("there are path, direct and moment")),
+        _ => return Err(query.unsupported("there are path, direct and moment; ptracer, volpath and volpathmis are rendered as path")),
     };
     query.finish()?;
     Ok(integrator)
@@ -92,6 +153,6 @@ fn path(query: &mut Query<'_>, hide_emitters: bool) -> Result<Integrator, SceneE
         max_depth,
         rr_depth,
         hide_emitters,
-        techniques: Techniques::Both,
+        ..Integrator::default()
     })
 }

@@ -1,5 +1,6 @@
 //! From a [`Description`] to a scene that can be rendered, of the smallest type that is enough.
 
+mod attributes;
 mod filter;
 mod geometry;
 mod material;
@@ -11,7 +12,7 @@ use std::fmt;
 use super::picture::Picture;
 use super::sensor::Projection;
 use super::texture as described;
-use super::{Description, SceneError, Sensor, Techniques};
+use super::{Description, SceneError, Sensor};
 use crate::Error;
 use crate::path::bsdf::{Lambertian, Material};
 use crate::path::light::{
@@ -23,7 +24,7 @@ use crate::path::texture::{Texture, Uniform};
 use crate::path::{Instances, Object, Paths, Scene, View};
 use filter::AnyFilter;
 use geometry::{Pieces, Solid};
-use material::{Images, Make, Value};
+use material::{Images, Make, Sources, Value};
 use needs::{Lights, Needs};
 
 /// Which type a scene is loaded as.
@@ -139,16 +140,11 @@ impl Plan<'_> {
         L: Light + fmt::Debug + 'static,
         E: Environment + fmt::Debug + 'static,
     {
-        let refused = |e: Error| self.description.place.error(e);
+        let refused = |e: Error| self.sensor.place.error(e);
         let paths = self.paths()?;
         let camera = self.camera().map_err(refused)?;
         let film = &self.sensor.film;
         let filter = AnyFilter::of(film.filter).map_err(refused)?;
-        if film.sample_border && !matches!(filter, AnyFilter::Box(_)) {
-            return Err(self.description.place.error(
-                "`sample_border` is supported for the box filter only, which does without; leave it out",
-            ));
-        }
         let place = self.description.place.clone();
         let refused = |e: Error| place.error(e);
         let needs = self.needs;
@@ -214,16 +210,6 @@ impl Plan<'_> {
         let Description {
             integrator, place, ..
         } = self.description;
-        if integrator.techniques == Techniques::Bsdfs && needs::has_points(self.description) {
-            return Err(place.error(
-                "without `emitter_samples` lights without size would be missed; leave them at 1",
-            ));
-        }
-        if integrator.techniques == Techniques::Emitters && needs::has_delta(self.description) {
-            return Err(place.error(
-                "without `bsdf_samples` mirrors and glass would be black; leave them at 1",
-            ));
-        }
         let mut paths = Paths::default().roulette_from(integrator.rr_depth);
         if integrator.hide_emitters {
             paths = paths.hiding_lights();
@@ -242,7 +228,11 @@ fn objects<B: Make>(pieces: Pieces<'_>) -> Result<(Vec<Object<B>>, Vec<Instances
     let mut object = |solid: Solid<'_>| {
         let shape = solid.shape;
         let refused = |message: String| shape.place.error(message);
-        let bsdf = B::make(&shape.bsdf, &mut images).map_err(refused)?;
+        let mut sources = Sources {
+            images: &mut images,
+            attributes: &solid.attributes,
+        };
+        let bsdf = B::make(&shape.bsdf, &mut sources).map_err(refused)?;
         let object = solid.surface.object(bsdf);
         match solid.radiance {
             None => Ok(object),
@@ -250,7 +240,7 @@ fn objects<B: Make>(pieces: Pieces<'_>) -> Result<(Vec<Object<B>>, Vec<Instances
                 .emitting(surroundings::narrow(*radiance))
                 .map_err(|e| refused(e.to_string())),
             Some(picture) => {
-                let picture = Value::value(picture, &mut images).map_err(refused)?;
+                let picture = Value::value(picture, &mut sources).map_err(refused)?;
                 object
                     .emitting_picture(picture)
                     .map_err(|e| refused(e.to_string()))

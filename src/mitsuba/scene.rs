@@ -1,7 +1,7 @@
 //! A whole scene.
 
 use super::document::{Document, Kind};
-use super::emitter::{self, Emitter};
+use super::emitter::{self, Emitter, Source};
 use super::error::{Place, SceneError};
 use super::integrator::{self, Integrator};
 use super::query::{Context, Query};
@@ -69,8 +69,8 @@ pub(super) fn describe(document: &Document) -> Result<Description, SceneError> {
     for &child in of(Kind::Emitter).filter(|child| !is_area(child.index)) {
         let emitter = emitter::describe(query.enter(child)?)?;
         let is_around = matches!(
-            emitter,
-            Emitter::Constant { .. } | Emitter::EnvironmentMap { .. }
+            emitter.source,
+            Source::Constant { .. } | Source::EnvironmentMap { .. }
         );
         if is_around && around {
             return Err(child
@@ -87,6 +87,9 @@ pub(super) fn describe(document: &Document) -> Result<Description, SceneError> {
         .next()
     {
         return Err(query.stray(stray));
+    }
+    if let Some(child) = of(Kind::Integrator).next() {
+        integrator.check(&document.objects[child.index].place, &shapes, &emitters)?;
     }
     let place = query.place().clone();
     query.finish()?;

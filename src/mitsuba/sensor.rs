@@ -3,7 +3,8 @@
 use glam::{DMat4, DVec2};
 
 use super::document::Kind;
-use super::error::SceneError;
+use super::error::{Place, SceneError};
+use super::field_of_view::FieldOfView;
 use super::film::{self, Film};
 use super::query::Query;
 use super::sampler::{self, Sampler};
@@ -23,6 +24,8 @@ pub struct Sensor {
     pub film: Film,
     /// The points.
     pub sampler: Sampler,
+    /// Where it stands in the file.
+    pub place: Place,
 }
 
 /// How points are projected onto the film.
@@ -73,14 +76,14 @@ pub(super) fn describe(mut query: Query<'_>) -> Result<Sensor, SceneError> {
     q.ignore(&["shutter_open", "shutter_close"]);
     let projection = match q.plugin() {
         "perspective" => Projection::Perspective {
-            fov: field_of_view(q, &film)?,
+            fov: fov(q, &film)?,
             principal_point_offset: DVec2::new(
                 q.number("principal_point_offset_x", 0.0)?,
                 q.number("principal_point_offset_y", 0.0)?,
             ),
         },
         "thinlens" => Projection::ThinLens {
-            fov: field_of_view(q, &film)?,
+            fov: fov(q, &film)?,
             aperture_radius: q.positive("aperture_radius", 0.0)?,
             focus_distance,
         },
@@ -92,6 +95,7 @@ pub(super) fn describe(mut query: Query<'_>) -> Result<Sensor, SceneError> {
     if projection != Projection::Orthographic && scales(&to_world) {
         return Err(q.error("`to_world` of a camera must not scale; change the field of view"));
     }
+    let place = q.place().clone();
     query.finish()?;
     Ok(Sensor {
         projection,
@@ -100,6 +104,7 @@ pub(super) fn describe(mut query: Query<'_>) -> Result<Sensor, SceneError> {
         far_clip,
         film,
         sampler,
+        place,
     })
 }
 
@@ -110,50 +115,9 @@ fn scales(transform: &DMat4) -> bool {
         .any(|axis| !((axis.length_squared() - 1.0).abs() < 1e-3))
 }
 
-/// The angle across, of `fov` along `fov_axis` or of a focal length for a film of 36 mm by 24 mm.
-fn field_of_view(q: &mut Query<'_>, film: &Film) -> Result<f64, SceneError> {
+/// The angle across the whole film.
+fn fov(q: &mut Query<'_>, film: &Film) -> Result<f64, SceneError> {
     let aspect = f64::from(film.width) / f64::from(film.height);
-    let axis = q.choice(
-        "fov_axis",
-        &[
-            ("x", Axis::X),
-            ("y", Axis::Y),
-            ("diagonal", Axis::Diagonal),
-            ("smaller", if aspect > 1.0 { Axis::Y } else { Axis::X }),
-            ("larger", if aspect > 1.0 { Axis::X } else { Axis::Y }),
-        ],
-    )?;
-    let focal_length = q.text("focal_length")?;
-    let (half_tangent, axis) = match (q.optional_number("fov")?, focal_length) {
-        (Some(_), Some(_)) => return Err(q.error("either `fov` or `focal_length`, not both")),
-        (Some(fov), None) if fov > 0.0 && fov < 180.0 => ((0.5 * fov).to_radians().tan(), axis),
-        (Some(fov), None) => {
-            return Err(q.error(format_args!(
-                "`fov` must be in (0, 180) degrees; it is {fov}"
-            )));
-        }
-        (None, length) => {
-            let text = length.unwrap_or("50mm");
-            let length = super::number::number(text.trim_end_matches("mm"));
-            let Some(length) = length.ok().filter(|&length| length > 0.0) else {
-                return Err(q.error(format_args!(
-                    "`focal_length` must be a length such as 50mm; it is `{text}`"
-                )));
-            };
-            (36.0_f64.hypot(24.0) / (2.0 * length), Axis::Diagonal)
-        }
-    };
-    let across = match axis {
-        Axis::X => half_tangent,
-        Axis::Y => half_tangent * aspect,
-        Axis::Diagonal => half_tangent / (1.0 + 1.0 / (aspect * aspect)).sqrt(),
-    };
-    Ok(2.0 * across.atan().to_degrees())
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Axis {
-    X,
-    Y,
-    Diagonal,
+    let half = FieldOfView::ask(q)?.half_width(aspect);
+    Ok(2.0 * half.atan().to_degrees())
 }

@@ -85,6 +85,19 @@ pub struct MeshAttribute {
     pub scale: f64,
 }
 
+impl Texture {
+    /// The attributes of meshes that it asks for.
+    pub(super) fn attributes(&self) -> Vec<&MeshAttribute> {
+        match self {
+            Self::Constant(_) | Self::Bitmap(_) => Vec::new(),
+            Self::Checkerboard(board) => {
+                [board.color0.attributes(), board.color1.attributes()].concat()
+            }
+            Self::MeshAttribute(attribute) => vec![attribute],
+        }
+    }
+}
+
 /// The value of a property that is no object.
 pub(super) fn value(property: &Property, role: Role) -> Result<Texture, SceneError> {
     let color = match &property.value {

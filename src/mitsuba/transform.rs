@@ -1,6 +1,6 @@
 //! Transforms, as chains of translations, rotations, scalings, views and matrices.
 
-use glam::{DAffine2, DMat2, DMat3, DMat4, DVec2, DVec3};
+use glam::{DAffine2, DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
 use roxmltree::Node;
 
 use super::error::{Place, SceneError};
@@ -43,10 +43,10 @@ pub(super) fn step(
             let axis = vector(place, 0.0, &mut attribute)?;
             let angle = required(attribute("angle")?, "angle")?;
             let angle = super::number::number(&angle).map_err(|e| place.error(e))?;
-            let Some(axis) = axis.try_normalize() else {
+            if axis == DVec3::ZERO {
                 return Err(place.error("the axis of a rotation must not be zero"));
-            };
-            DMat4::from_axis_angle(axis, angle.to_radians())
+            }
+            rotation(axis, angle.to_radians())
         }
         "lookat" => {
             let read = |text: String| triple(&text).map_err(|e| place.error(e));
@@ -67,6 +67,17 @@ pub(super) fn step(
         }
     };
     Ok(matrix)
+}
+
+/// Rodrigues' formula. As Mitsuba has it, an axis of another length than 1 is taken as it is, which stretches.
+fn rotation(axis: DVec3, angle: f64) -> DMat4 {
+    let (sine, cosine) = angle.sin_cos();
+    let column = |unit: DVec3| {
+        let turned = unit * cosine + axis.cross(unit) * sine;
+        (turned + axis * (axis.dot(unit) * (1.0 - cosine))).extend(0.0)
+    };
+    let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(column);
+    DMat4::from_cols(x, y, z, DVec4::W)
 }
 
 /// The vector of `value`, or of `x`, `y` and `z`.

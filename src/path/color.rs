@@ -32,6 +32,9 @@ fn within(
     }
 }
 
+/// The luminance of linear sRGB, by its second row of the matrix to XYZ, as Mitsuba rounds it.
+pub(in crate::path) const LUMINANCE: Vec3A = Vec3A::new(0.212_671, 0.715_160, 0.072_169);
+
 /// The luminance of linear sRGB, as ITU-R BT.709 weighs it.
 pub(in crate::path) fn luminance(rgb: Vec3) -> f64 {
     0.2126 * f64::from(rgb.x) + 0.7152 * f64::from(rgb.y) + 0.0722 * f64::from(rgb.z)

@@ -58,13 +58,13 @@ pub(in crate::path) struct Hit {
     pub(in crate::path) part: usize,
     pub(in crate::path) surface: Surface,
     /// Which triangle of all meshes, if it is one.
-    triangle: usize,
+    pub(in crate::path) triangle: usize,
     /// Which copy, if it is one.
     copy: Option<usize>,
 }
 
 /// Up to so many shapes are swept over: there a sweep of vectors is faster than a tree.
-const FEW: usize = 48;
+pub(in crate::path) const FEW: usize = 48;
 
 /// The smallest box around boxes.
 pub(in crate::path) fn around(boxes: impl Iterator<Item = [Vec3A; 2]>) -> [Vec3A; 2] {

@@ -6,7 +6,7 @@
 //! | [`AreaLights`], [`LightTree`] | 2, however many there are |
 //! | [`NoEnvironment`], [`Constant`] | 0 |
 //! | [`Sky`] | 2 |
-//! | [`Surroundings`]: [`PointLight`], [`SpotLight`], [`DirectionalLight`] and a background | 0 to 3 |
+//! | [`Surroundings`]: [`PointLight`], [`SpotLight`], [`ProjectorLight`], [`DirectionalLight`] and a background | 0 to 3 |
 //!
 //! # Writing your own
 //!
@@ -17,7 +17,9 @@ mod area;
 mod directional;
 mod environment;
 mod point;
+mod projector;
 mod sky;
+mod slide;
 mod spot;
 mod surroundings;
 mod tree;
@@ -33,6 +35,7 @@ pub use area::AreaLights;
 pub use directional::DirectionalLight;
 pub use environment::{Constant, Environment, NoEnvironment};
 pub use point::PointLight;
+pub use projector::ProjectorLight;
 pub use sky::Sky;
 pub use spot::SpotLight;
 pub use surroundings::{Background, Source, Surroundings};

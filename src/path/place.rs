@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3A};
 
-use super::{Detail, Frame, Shading, Surface};
+use super::{Detail, Facet, Frame, Shading, Surface};
 
 /// What a law of scattering knows of the point of a surface, in the frame that the law works in: its third
 /// axis is the shading normal.
@@ -62,6 +62,8 @@ pub struct Spot {
     pub derivatives: [Vec3A; 2],
     /// The normal of the surface itself, of length 1.
     pub outward: Vec3A,
+    /// Which point of a mesh it is.
+    pub facet: Facet,
 }
 
 impl Spot {
@@ -71,6 +73,7 @@ impl Spot {
             uv,
             derivatives: ().derivatives(),
             outward: ().outward(),
+            facet: Facet::default(),
         }
     }
 }
@@ -85,11 +88,14 @@ impl Place for Spot {
 
     #[inline]
     fn of(at: &Surface<Shading>, frame: &Frame) -> Self {
-        let Shading { uv, du, dv, .. } = at.detail;
+        let Shading {
+            uv, du, dv, facet, ..
+        } = at.detail;
         Self {
             uv,
             derivatives: [du, dv].map(|derivative| frame.local(derivative)),
             outward: frame.local(at.normal),
+            facet,
         }
     }
 
@@ -109,6 +115,7 @@ impl Place for Spot {
             uv: self.uv,
             derivatives: self.derivatives.map(|derivative| frame.local(derivative)),
             outward: frame.local(self.outward),
+            facet: self.facet,
         }
     }
 }

@@ -6,7 +6,7 @@ use glam::{Affine2, Affine3A, Mat2, Vec3A};
 
 use super::bsdf::{Bsdf, Material};
 use super::color;
-use super::geometry::{Copied, Geometry, Hit, around};
+use super::geometry::{Copied, FEW, Geometry, Hit, around};
 use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment, Picture};
 #[cfg(feature = "simd")]
 use super::packet::{Emitted, Optics, Packet};
@@ -55,6 +55,15 @@ impl Radiance {
             picture,
         }
     }
+
+    /// The triangles of a mesh that emit it.
+    fn emitters(&self, mesh: &Mesh) -> impl Iterator<Item = Emitter> {
+        (0..mesh.triangles().len()).map(|triangle| {
+            let [a, b, c] = mesh.uvs(triangle);
+            let place = Affine2::from_mat2_translation(Mat2::from_cols(b - a, c - a), a);
+            self.emitter(mesh.flat(triangle).into(), place)
+        })
+    }
 }
 
 impl<B> Object<B> {
@@ -73,6 +82,18 @@ impl<B> Object<B> {
         Self {
             meshes: vec![mesh],
             ..Self::new([] as [Primitive; 0], bsdf)
+        }
+    }
+
+    /// The same with the triangles of its meshes as shapes of their own. What the meshes know of normals and texture
+    /// coordinates is lost: a mesh that emits a picture stays whole.
+    fn take_apart(&mut self) {
+        if matches!(self.radiance, Radiance::Picture(_)) {
+            return;
+        }
+        for mesh in self.meshes.drain(..) {
+            let triangles = (0..mesh.triangles().len()).map(|triangle| mesh.flat(triangle));
+            self.shapes.extend(triangles.map(Primitive::from));
         }
     }
 
@@ -150,11 +171,26 @@ pub struct Scene<B = Material, L = AreaLights, E = NoEnvironment> {
     packet: Option<Box<Packet>>,
 }
 
-/// What belongs to a shape.
+/// What belongs to a shape or a mesh.
 #[derive(Clone, Copy, Debug)]
 struct Owner {
     bsdf: u32,
+    /// The emitter that it is; of a mesh the one that its first triangle is, and the others follow.
     emitter: u32,
+    /// How many triangles of meshes there are before it.
+    triangles: usize,
+}
+
+impl Owner {
+    /// The emitter that was hit, if it is one, and which of all triangles it is, if it is one.
+    #[inline]
+    fn emitter(self, triangle: usize) -> Option<u32> {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "emitters have numbers below 2^32"
+        )]
+        (self.emitter != DARK).then(|| self.emitter + (triangle - self.triangles) as u32)
+    }
 }
 
 /// The `emitter` of a shape that emits nothing.
@@ -209,6 +245,10 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
         environment: E,
     ) -> Result<Self, Error> {
         let mut parts = Parts::default();
+        let mut objects = objects;
+        if B::Detail::is_nothing() && are_few(&objects) && instances.is_empty() {
+            objects.iter_mut().for_each(Object::take_apart);
+        }
         let (shapes, meshes) = parts.add(objects)?;
         let mut copies = Vec::new();
         for Instances { objects, places } in instances {
@@ -278,6 +318,15 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
     }
 }
 
+/// Whether there are so few shapes and triangles that looking at all of them is best.
+fn are_few<B>(objects: &[Object<B>]) -> bool {
+    let count = |object: &Object<B>| {
+        let triangles = object.meshes.iter().map(|mesh| mesh.triangles().len());
+        object.shapes.len() + triangles.sum::<usize>()
+    };
+    objects.iter().map(count).sum::<usize>() <= FEW
+}
+
 /// What the objects of a scene are made of.
 struct Parts<B> {
     owners: Vec<Owner>,
@@ -296,43 +345,44 @@ impl<B> Default for Parts<B> {
 }
 
 impl<B> Parts<B> {
-    /// The shapes and the meshes of some objects, after their owners were added in this order. Meshes that emit
-    /// light are taken apart, since every triangle of them is a light.
+    /// The shapes and the meshes of some objects, after their owners were added in this order.
     fn add(&mut self, objects: Vec<Object<B>>) -> Result<(Vec<Primitive>, Vec<Mesh>), Error> {
         let (mut shapes, mut meshes, mut owners_of_meshes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut triangles = 0;
         for mut object in objects {
             check_object(object.bounds())?;
             let bsdf = index(self.bsdfs.len())?;
             self.bsdfs.push(object.bsdf);
-            let dark = Owner {
-                bsdf,
-                emitter: DARK,
-            };
-            if object.radiance == Radiance::Nothing {
-                owners_of_meshes.resize(owners_of_meshes.len() + object.meshes.len(), dark);
-                meshes.append(&mut object.meshes);
-                self.owners
-                    .resize(self.owners.len() + object.shapes.len(), dark);
-                shapes.append(&mut object.shapes);
-                continue;
+            let shines = object.radiance != Radiance::Nothing;
+            for &shape in &object.shapes {
+                let mut owner = Owner {
+                    bsdf,
+                    emitter: DARK,
+                    triangles: 0,
+                };
+                if shines {
+                    owner.emitter = index(self.emitters.len())?;
+                    let emitter = object.radiance.emitter(shape, Affine2::IDENTITY);
+                    self.emitters.push(emitter);
+                }
+                self.owners.push(owner);
             }
-            let whole = object
-                .shapes
-                .into_iter()
-                .map(|shape| (shape, Affine2::IDENTITY));
-            let triangles = object.meshes.iter().flat_map(|mesh| {
-                (0..mesh.triangles().len()).map(|triangle| {
-                    let [a, b, c] = mesh.uvs(triangle);
-                    let place = Affine2::from_mat2_translation(Mat2::from_cols(b - a, c - a), a);
-                    (mesh.flat(triangle).into(), place)
-                })
-            });
-            for (shape, place) in whole.chain(triangles) {
-                let emitter = index(self.emitters.len())?;
-                self.emitters.push(object.radiance.emitter(shape, place));
-                self.owners.push(Owner { bsdf, emitter });
-                shapes.push(shape);
+            for mesh in &object.meshes {
+                let mut owner = Owner {
+                    bsdf,
+                    emitter: DARK,
+                    triangles,
+                };
+                triangles += mesh.triangles().len();
+                if shines {
+                    owner.emitter = index(self.emitters.len())?;
+                    index(self.emitters.len() + mesh.triangles().len())?;
+                    self.emitters.extend(object.radiance.emitters(mesh));
+                }
+                owners_of_meshes.push(owner);
             }
+            shapes.append(&mut object.shapes);
+            meshes.append(&mut object.meshes);
         }
         self.owners.append(&mut owners_of_meshes);
         Ok((shapes, meshes))
@@ -357,7 +407,7 @@ impl<B: Bsdf, L, E> Scene<B, L, E> {
         Some(Vertex {
             surface: hit.surface.with(detail),
             bsdf: &self.bsdfs[owner.bsdf as usize],
-            emitter: (owner.emitter != DARK).then_some(owner.emitter),
+            emitter: owner.emitter(hit.triangle),
             geometry: &self.geometry,
             hit,
         })

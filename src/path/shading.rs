@@ -8,11 +8,20 @@ pub trait Detail: Copy + Send + Sync {
     /// The detail, from a function that computes all there is to know. The function is called only if it is
     /// needed.
     fn from_shading(shading: impl FnOnce() -> Shading) -> Self;
+
+    /// Whether there is nothing that it needs to know.
+    fn is_nothing() -> bool {
+        false
+    }
 }
 
 impl Detail for () {
     #[inline]
     fn from_shading(_: impl FnOnce() -> Shading) -> Self {}
+
+    fn is_nothing() -> bool {
+        true
+    }
 }
 
 impl Detail for Shading {
@@ -20,6 +29,15 @@ impl Detail for Shading {
     fn from_shading(shading: impl FnOnce() -> Self) -> Self {
         shading()
     }
+}
+
+/// Where on a mesh a point is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Facet {
+    /// Which triangle, of those that the mesh was made of; 0 on other shapes.
+    pub triangle: u32,
+    /// The coordinates along its first edge, from the first corner to the second, and from the first to the third.
+    pub along: Vec2,
 }
 
 /// The parametrisation of a surface at a point.
@@ -34,4 +52,6 @@ pub struct Shading {
     pub du: Vec3A,
     /// How the point moves with the second texture coordinate.
     pub dv: Vec3A,
+    /// Which point of a mesh it is.
+    pub facet: Facet,
 }

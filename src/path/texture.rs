@@ -5,6 +5,7 @@
 //! | [`Uniform`] | the same everywhere |
 //! | [`Bitmap`] | that of an image, interpolated or not, repeated, mirrored or continued |
 //! | [`Checkerboard`] | one of two textures in turn |
+//! | [`Attribute`] | what a mesh has there |
 //! | [`Texture`] | as any of them |
 //!
 //! Laws of scattering take any [`Parameter`]. With [`Uniform`] ones they ask for no texture coordinates and look nothing
@@ -14,6 +15,7 @@
 //!
 //! Implement [`Parameter`].
 
+mod attribute;
 mod bitmap;
 mod checkerboard;
 mod uniform;
@@ -25,6 +27,7 @@ use glam::{Vec2, Vec3A};
 use super::place::{Place, Spot};
 use crate::Error;
 
+pub use attribute::Attribute;
 pub use bitmap::{Bitmap, Encoding, Filter, Wrap};
 pub use checkerboard::Checkerboard;
 pub use uniform::Uniform;
@@ -59,6 +62,8 @@ pub enum Texture {
     Bitmap(Arc<Bitmap>),
     /// Two textures in turn.
     Checkerboard(Arc<Checkerboard>),
+    /// Values of a mesh.
+    Attribute(Arc<Attribute>),
 }
 
 impl From<Uniform> for Texture {
@@ -79,36 +84,30 @@ impl From<Checkerboard> for Texture {
     }
 }
 
+impl From<Attribute> for Texture {
+    fn from(attribute: Attribute) -> Self {
+        Self::Attribute(Arc::new(attribute))
+    }
+}
+
 impl Texture {
     /// The value at the texture coordinates `uv` as linear red, green and blue.
     #[inline]
     pub fn color_at(&self, uv: Vec2) -> Vec3A {
-        match self {
-            Self::Uniform(uniform) => uniform.color(&()),
-            Self::Bitmap(bitmap) => bitmap.color_at(uv),
-            Self::Checkerboard(checkerboard) => checkerboard.color_at(uv),
-        }
+        self.color(&Spot::new(uv))
     }
 
     /// The value at the texture coordinates `uv` as a number: of three components in an image the luminance, of three
     /// given ones the mean, as Mitsuba has it.
     #[inline]
     pub fn number_at(&self, uv: Vec2) -> f32 {
-        match self {
-            Self::Uniform(uniform) => uniform.number(&()),
-            Self::Bitmap(bitmap) => bitmap.number_at(uv),
-            Self::Checkerboard(checkerboard) => checkerboard.number_at(uv),
-        }
+        self.number(&Spot::new(uv))
     }
 
     /// The derivatives of the number at `uv` by `u` and `v`.
     #[inline]
     pub fn slope_at(&self, uv: Vec2) -> Vec2 {
-        match self {
-            Self::Uniform(_) => Vec2::ZERO,
-            Self::Bitmap(bitmap) => bitmap.slope_at(uv),
-            Self::Checkerboard(checkerboard) => checkerboard.slope_at(uv),
-        }
+        self.slope(&Spot::new(uv))
     }
 }
 
@@ -117,17 +116,32 @@ impl Parameter for Texture {
 
     #[inline]
     fn color(&self, place: &Spot) -> Vec3A {
-        self.color_at(place.uv)
+        match self {
+            Self::Uniform(uniform) => uniform.color(&()),
+            Self::Bitmap(bitmap) => bitmap.color_at(place.uv),
+            Self::Checkerboard(checkerboard) => checkerboard.color(place),
+            Self::Attribute(attribute) => attribute.color_at(place.facet),
+        }
     }
 
     #[inline]
     fn number(&self, place: &Spot) -> f32 {
-        self.number_at(place.uv)
+        match self {
+            Self::Uniform(uniform) => uniform.number(&()),
+            Self::Bitmap(bitmap) => bitmap.number_at(place.uv),
+            Self::Checkerboard(checkerboard) => checkerboard.number(place),
+            Self::Attribute(attribute) => attribute.number_at(place.facet),
+        }
     }
 
+    /// That of an attribute of a mesh is zero: it knows no texture coordinates.
     #[inline]
     fn slope(&self, place: &Spot) -> Vec2 {
-        self.slope_at(place.uv)
+        match self {
+            Self::Uniform(_) | Self::Attribute(_) => Vec2::ZERO,
+            Self::Bitmap(bitmap) => bitmap.slope_at(place.uv),
+            Self::Checkerboard(checkerboard) => checkerboard.slope(place),
+        }
     }
 
     fn mean(&self) -> f32 {
@@ -135,6 +149,7 @@ impl Parameter for Texture {
             Self::Uniform(uniform) => uniform.mean(),
             Self::Bitmap(bitmap) => bitmap.mean(),
             Self::Checkerboard(checkerboard) => checkerboard.mean(),
+            Self::Attribute(attribute) => attribute.mean(),
         }
     }
 
@@ -143,6 +158,7 @@ impl Parameter for Texture {
             Self::Uniform(uniform) => uniform.range(),
             Self::Bitmap(bitmap) => bitmap.range(),
             Self::Checkerboard(checkerboard) => checkerboard.range(),
+            Self::Attribute(attribute) => attribute.range(),
         }
     }
 }

@@ -8,7 +8,7 @@ use estimand::path::light::{AreaLights, Constant, NoEnvironment, NoLight};
 use estimand::path::sensor::Pinhole;
 use estimand::path::shape::Sphere;
 use estimand::path::texture::{Checkerboard, Texture};
-use estimand::path::{Image, Object, Paths, Scene, Shading, Spot, Surface, View};
+use estimand::path::{Facet, Image, Object, Paths, Scene, Shading, Spot, Surface, View};
 use estimand::{Moments, MonteCarlo};
 use glam::{Affine2, Vec2};
 
@@ -136,6 +136,7 @@ fn leaning() -> Surface<Shading> {
         normal,
         du: Vec3A::new(0.5, 2.0, 0.1),
         dv: Vec3A::new(-2.0, 0.5, 0.0),
+        facet: Facet::default(),
     })
 }
 

@@ -171,3 +171,31 @@ fn what_is_no_mesh_is_refused() {
         assert!(error.contains(expected), "{content}\n{error}");
     }
 }
+
+/// What Mitsuba 3.9.1 has as the attributes of this file (`mi.traverse`).
+#[test]
+fn integers_as_attributes_are_encoded_fractions() {
+    let mesh = load(MeshFormat::Ply, "ply\nformat ascii 1.0\n\
+         element vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+         property uchar r\nproperty uchar g\nproperty uchar b\nproperty ushort w_0\n\
+         element face 1\nproperty list uchar int vertex_indices\nproperty float heat_0\nproperty char cold_0\nend_header\n\
+         0 0 0 128 255 0 32768\n1 0 0 128 10 0 65535\n0 1 0 0 0 64 0\n3 0 1 2 0.25 64\n", PLAIN).unwrap();
+    let expected: [(&str, usize, &[f32]); 4] = [
+        (
+            "vertex_color",
+            3,
+            &[128.0, 255.0, 0.0, 128.0, 10.0, 0.0, 0.0, 0.0, 64.0],
+        ),
+        ("vertex_w", 1, &[0.214_048_09, 1.0, 0.0]),
+        ("face_heat", 1, &[0.25]),
+        ("face_cold", 1, &[0.217_703_16]),
+    ];
+    assert_eq!(mesh.attributes.len(), expected.len());
+    for (attribute, (name, channels, values)) in mesh.attributes.iter().zip(expected) {
+        assert_eq!((&*attribute.name, attribute.channels), (name, channels));
+        assert_eq!(attribute.values.len(), values.len());
+        for (value, expected) in attribute.values.iter().zip(values) {
+            assert!((value - expected).abs() < 1e-6, "{name}: {value}");
+        }
+    }
+}

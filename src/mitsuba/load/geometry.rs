@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, DMat3, DMat4, DVec3};
 
+use super::attributes::Attributes;
 use super::surroundings::narrow;
 use crate::Error;
 use crate::mitsuba::transform::tangent;
@@ -28,6 +29,7 @@ pub(super) struct Pieces<'a> {
 pub(super) struct Solid<'a> {
     pub(super) shape: &'a Shape,
     pub(super) surface: Body,
+    pub(super) attributes: Attributes,
     /// `None` if it emits nothing.
     pub(super) radiance: Option<&'a Texture>,
 }
@@ -117,10 +119,13 @@ impl<'a> Pieces<'a> {
 impl<'a> Solid<'a> {
     /// `None` if there is nothing to hit.
     fn load(shape: &'a Shape, dropped: &mut usize) -> Result<Option<Self>, SceneError> {
+        let mut attributes = Attributes::default();
         let surface = match &shape.geometry {
             Geometry::Mesh(file) => {
-                let mesh = mesh::place(file.load()?, file, &shape.to_world)
-                    .map_err(|e| shape.place.error(e))?;
+                let mesh = file.load()?;
+                let refused = |e: String| shape.place.error(e);
+                attributes = Attributes::of(shape, &mesh).map_err(refused)?;
+                let mesh = mesh::place(mesh, file, &shape.to_world).map_err(refused)?;
                 let (Body::Smooth(loaded) | Body::Faceted(loaded)) = &mesh else {
                     return Ok(None);
                 };
@@ -141,6 +146,7 @@ impl<'a> Solid<'a> {
         Ok(Some(Self {
             shape,
             surface,
+            attributes,
             radiance,
         }))
     }
@@ -190,10 +196,12 @@ fn primitives(geometry: &Geometry, to_world: &DMat4) -> Result<Vec<Primitive>, S
                 sphere.with_axes(start.as_vec3a(), pole.as_vec3a())
             })
             .map_err(refused)?;
-            if flip_normals {
-                sphere.turned()
-            } else {
-                sphere
+            // A mirror turns the sphere inside out.
+            match (mirrored, flip_normals) {
+                (false, false) => sphere,
+                (false, true) => sphere.turned(),
+                (true, false) => sphere.mirrored().turned(),
+                (true, true) => sphere.mirrored(),
             }
             .into()
         }
@@ -212,10 +220,12 @@ fn primitives(geometry: &Geometry, to_world: &DMat4) -> Result<Vec<Primitive>, S
                 across.as_vec3a(),
             )
             .map_err(refused)?;
-            if flip_normals {
-                cylinder.turned()
-            } else {
-                cylinder
+            // A mirror turns normals inside out, and once more by the direction in which it is parametrised.
+            match (mirrored, flip_normals) {
+                (false, false) => cylinder,
+                (false, true) => cylinder.turned(),
+                (true, false) => cylinder.mirrored(),
+                (true, true) => cylinder.mirrored().turned(),
             }
             .into()
         }
@@ -234,5 +244,54 @@ fn uniform_scale(to_world: &DMat4) -> Result<f64, String> {
         Ok(scale)
     } else {
         Err("spheres and cylinders are scaled alike in all directions; use a mesh".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3A;
+
+    use super::*;
+    use crate::path::Ray;
+    use crate::path::shape::Shape as _;
+
+    /// Whether the outer side is inside, and where the texture coordinate u is, at the point that a ray along -x meets.
+    fn seen(geometry: &Geometry, x: f64) -> (bool, f32) {
+        let to_world = DMat4::from_scale(DVec3::new(x, 1.0, 1.0));
+        let shape = primitives(geometry, &to_world).unwrap()[0];
+        let ray = Ray {
+            origin: Vec3A::new(3.0, 0.3, 0.5),
+            direction: Vec3A::NEG_X,
+        };
+        let surface = shape.surface(&ray, shape.intersect(&ray, 9.0).unwrap());
+        (surface.normal.x < 0.0, shape.shading(&surface).uv.x)
+    }
+
+    /// Mitsuba 3.9.1, `ray_intersect`.
+    #[test]
+    fn mirrors_turn_spheres_inside_out_but_not_cylinders() {
+        for flip_normals in [false, true] {
+            let sphere = Geometry::Sphere {
+                center: DVec3::ZERO,
+                radius: 1.0,
+                flip_normals,
+            };
+            let cylinder = Geometry::Cylinder {
+                p0: DVec3::ZERO,
+                p1: DVec3::Z,
+                radius: 1.0,
+                flip_normals,
+            };
+            for (geometry, x, inside, u) in [
+                (&sphere, 1.0, flip_normals, 0.056_299_7),
+                (&sphere, -1.0, !flip_normals, 0.443_700),
+                (&cylinder, 1.0, flip_normals, 0.048_493_3),
+                (&cylinder, -1.0, flip_normals, 0.451_507),
+            ] {
+                let seen = seen(geometry, x);
+                assert_eq!(seen.0, inside, "{geometry:?} {x}");
+                assert!((seen.1 - u).abs() < 2e-6, "{geometry:?} {x}: {}", seen.1);
+            }
+        }
     }
 }

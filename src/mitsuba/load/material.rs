@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::attributes::Attributes;
 use super::needs::is_lambertian;
 use super::surroundings::narrow;
 use crate::mitsuba::{
@@ -18,13 +19,31 @@ use crate::path::texture::{self, Parameter, Uniform};
 #[derive(Debug, Default)]
 pub(super) struct Images(HashMap<usize, texture::Texture>);
 
+/// Where the values of a shape's textures come from.
+#[derive(Debug)]
+pub(super) struct Sources<'a> {
+    pub(super) images: &'a mut Images,
+    pub(super) attributes: &'a Attributes,
+}
+
+impl<'a> Sources<'a> {
+    /// Of what is no mesh.
+    pub(super) fn of(images: &'a mut Images) -> Self {
+        static NONE: Attributes = Attributes::NONE;
+        Self {
+            images,
+            attributes: &NONE,
+        }
+    }
+}
+
 /// A law of scattering that can be made of a description.
 pub(super) trait Make: bsdf::Bsdf + fmt::Debug + Sized + 'static {
-    fn make(bsdf: &Bsdf, images: &mut Images) -> Result<Self, String>;
+    fn make(bsdf: &Bsdf, sources: &mut Sources<'_>) -> Result<Self, String>;
 }
 
 impl Make for Lambertian {
-    fn make(bsdf: &Bsdf, _: &mut Images) -> Result<Self, String> {
+    fn make(bsdf: &Bsdf, _: &mut Sources<'_>) -> Result<Self, String> {
         let of = |bsdf: &Bsdf| {
             let color = diffuse_color(bsdf).ok_or("a law of scattering that is not diffuse")?;
             Self::new(narrow(color)).map_err(|e| e.to_string())
@@ -47,18 +66,18 @@ fn diffuse_color(bsdf: &Bsdf) -> Option<DVec3> {
 }
 
 impl<P: Value> Make for Material<P> {
-    fn make(bsdf: &Bsdf, images: &mut Images) -> Result<Self, String> {
-        Maker { images }.material(bsdf)
+    fn make(bsdf: &Bsdf, sources: &mut Sources<'_>) -> Result<Self, String> {
+        Maker { sources }.material(bsdf)
     }
 }
 
 /// A parameter that can be made of a description.
 pub(super) trait Value: Parameter + fmt::Debug + 'static {
-    fn value(texture: &Texture, images: &mut Images) -> Result<Self, String>;
+    fn value(texture: &Texture, sources: &mut Sources<'_>) -> Result<Self, String>;
 }
 
 impl Value for Uniform {
-    fn value(texture: &Texture, _: &mut Images) -> Result<Self, String> {
+    fn value(texture: &Texture, _: &mut Sources<'_>) -> Result<Self, String> {
         match texture {
             Texture::Constant(color) => Ok(Self::from(narrow(*color))),
             _ => Err("a texture where the same value is needed everywhere".to_owned()),
@@ -67,33 +86,33 @@ impl Value for Uniform {
 }
 
 impl Value for texture::Texture {
-    fn value(texture: &Texture, images: &mut Images) -> Result<Self, String> {
-        let key = match texture {
+    fn value(texture: &Texture, sources: &mut Sources<'_>) -> Result<Self, String> {
+        let bitmap = match texture {
             Texture::Constant(color) => return Ok(Uniform::from(narrow(*color)).into()),
-            Texture::MeshAttribute(attribute) => {
-                return Err(format!(
-                    "the mesh attribute `{}` is not supported as a texture; use a bitmap",
-                    attribute.name
-                ));
+            Texture::MeshAttribute(asked) => {
+                let found = sources.attributes.get(asked).cloned();
+                return found.map(Into::into).ok_or_else(|| {
+                    let name = &asked.name;
+                    format!(
+                        "the mesh attribute `{name}` colours what reflects, of a ply; use a bitmap"
+                    )
+                });
             }
-            Texture::Bitmap(bitmap) => Arc::as_ptr(bitmap) as usize,
-            Texture::Checkerboard(board) => Arc::as_ptr(board) as usize,
-        };
-        if let Some(known) = images.0.get(&key) {
-            return Ok(known.clone());
-        }
-        let made: Self = match texture {
-            Texture::Bitmap(bitmap) => image(bitmap)?.into(),
             Texture::Checkerboard(board) => {
                 let colors = [
-                    Self::value(&board.color0, images)?,
-                    Self::value(&board.color1, images)?,
+                    Self::value(&board.color0, sources)?,
+                    Self::value(&board.color1, sources)?,
                 ];
-                texture::Checkerboard::new(colors, board.to_uv.as_affine2()).into()
+                return Ok(texture::Checkerboard::new(colors, board.to_uv.as_affine2()).into());
             }
-            Texture::Constant(_) | Texture::MeshAttribute(_) => unreachable!("returned above"),
+            Texture::Bitmap(bitmap) => bitmap,
         };
-        images.0.insert(key, made.clone());
+        let key = Arc::as_ptr(bitmap) as usize;
+        if let Some(known) = sources.images.0.get(&key) {
+            return Ok(known.clone());
+        }
+        let made: Self = image(bitmap)?.into();
+        sources.images.0.insert(key, made.clone());
         Ok(made)
     }
 }
@@ -120,14 +139,14 @@ fn image(bitmap: &mitsuba::Bitmap) -> Result<texture::Bitmap, String> {
         .transformed(bitmap.to_uv.as_affine2()))
 }
 
-struct Maker<'a> {
-    images: &'a mut Images,
+struct Maker<'a, 's> {
+    sources: &'a mut Sources<'s>,
 }
 
-impl Maker<'_> {
+impl Maker<'_, '_> {
     fn material<P: Value>(&mut self, bsdf: &Bsdf) -> Result<Material<P>, String> {
         if is_lambertian(bsdf) {
-            return Lambertian::make(bsdf, self.images).map(Into::into);
+            return Lambertian::make(bsdf, self.sources).map(Into::into);
         }
         let refused = |e: crate::Error| e.to_string();
         Ok(match bsdf {
@@ -224,6 +243,12 @@ impl Maker<'_> {
                 perturbed,
                 nested,
             } => {
+                if !texture.attributes().is_empty() {
+                    return Err(
+                        "a bump map of a mesh attribute, which has no slope; use a bitmap"
+                            .to_owned(),
+                    );
+                }
                 let law: Material<P> = self.material(nested)?;
                 #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
                 let scale = *scale as f32;
@@ -245,7 +270,7 @@ impl Maker<'_> {
     }
 
     fn value<P: Value>(&mut self, texture: &Texture) -> Result<P, String> {
-        P::value(texture, self.images)
+        P::value(texture, self.sources)
     }
 
     fn conductor<P: Value>(&mut self, conductor: &Conductor) -> Result<bsdf::Conductor<P>, String> {

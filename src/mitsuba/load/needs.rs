@@ -2,10 +2,7 @@
 
 use super::geometry::Pieces;
 use super::surroundings::Surroundings;
-use crate::mitsuba::{
-    Bsdf, Conductor, Description, Dielectric, Emitter, Filter, Plastic, Projection, Roughness,
-    Texture,
-};
+use crate::mitsuba::{Bsdf, Description, Filter, Projection, Texture};
 use crate::path::light::Background;
 
 /// What a scene needs of the path tracer.
@@ -130,96 +127,14 @@ pub(super) fn is_lambertian(bsdf: &Bsdf) -> bool {
 
 /// Whether it varies over the surface, or with the direction along it.
 fn varies(bsdf: &Bsdf) -> bool {
-    let textures: &[&Texture] = match bsdf {
-        Bsdf::Null => &[],
-        Bsdf::BumpMap { .. } | Bsdf::NormalMap { .. } => return true,
-        Bsdf::TwoSided { front, back } => return varies(front) || varies(back),
-        Bsdf::Diffuse { reflectance } => &[reflectance],
-        Bsdf::Conductor(conductor) => return conductor_varies(conductor),
-        Bsdf::RoughConductor {
-            conductor,
-            roughness,
-        } => return conductor_varies(conductor) || roughness_varies(roughness),
-        Bsdf::Dielectric(dielectric) | Bsdf::ThinDielectric(dielectric) => {
-            return dielectric_varies(dielectric);
+    bsdf.any(&|bsdf| match bsdf {
+        Bsdf::BumpMap { .. } | Bsdf::NormalMap { .. } => true,
+        // Directions along the surface are those of texture coordinates.
+        Bsdf::RoughConductor { roughness, .. } | Bsdf::RoughDielectric { roughness, .. }
+            if roughness.alpha_u != roughness.alpha_v =>
+        {
+            true
         }
-        Bsdf::RoughDielectric {
-            dielectric,
-            roughness,
-        } => return dielectric_varies(dielectric) || roughness_varies(roughness),
-        Bsdf::Plastic(plastic) | Bsdf::RoughPlastic { plastic, .. } => {
-            return plastic_varies(plastic);
-        }
-        Bsdf::Mask { opacity, nested } => return any_varies(&[opacity]) || varies(nested),
-        Bsdf::Blend {
-            weight,
-            first,
-            second,
-        } => return any_varies(&[weight]) || varies(first) || varies(second),
-    };
-    any_varies(textures)
-}
-
-fn any_varies(textures: &[&Texture]) -> bool {
-    !textures
-        .iter()
-        .all(|texture| matches!(texture, Texture::Constant(_)))
-}
-
-fn conductor_varies(conductor: &Conductor) -> bool {
-    let Conductor {
-        eta,
-        k,
-        specular_reflectance,
-    } = conductor;
-    any_varies(&[eta, k, specular_reflectance])
-}
-
-fn dielectric_varies(dielectric: &Dielectric) -> bool {
-    any_varies(&[
-        &dielectric.specular_reflectance,
-        &dielectric.specular_transmittance,
-    ])
-}
-
-fn plastic_varies(plastic: &Plastic) -> bool {
-    any_varies(&[&plastic.diffuse_reflectance, &plastic.specular_reflectance])
-}
-
-/// Directions along the surface are those of texture coordinates.
-fn roughness_varies(roughness: &Roughness) -> bool {
-    any_varies(&[&roughness.alpha_u]) || roughness.alpha_u != roughness.alpha_v
-}
-
-/// Whether there are lights without size.
-pub(super) fn has_points(description: &Description) -> bool {
-    description.emitters.iter().any(|emitter| {
-        matches!(
-            emitter,
-            Emitter::Point { .. } | Emitter::Spot(_) | Emitter::Directional { .. }
-        )
+        _ => !(bsdf.textures().into_iter()).all(|texture| matches!(texture, Texture::Constant(_))),
     })
-}
-
-/// Whether some surface scatters light to single directions.
-pub(super) fn has_delta(description: &Description) -> bool {
-    description.shapes.iter().any(|shape| is_delta(&shape.bsdf))
-}
-
-fn is_delta(bsdf: &Bsdf) -> bool {
-    match bsdf {
-        Bsdf::Diffuse { .. }
-        | Bsdf::RoughConductor { .. }
-        | Bsdf::RoughDielectric { .. }
-        | Bsdf::RoughPlastic { .. } => false,
-        Bsdf::Conductor(_)
-        | Bsdf::Dielectric(_)
-        | Bsdf::ThinDielectric(_)
-        | Bsdf::Plastic(_)
-        | Bsdf::Mask { .. }
-        | Bsdf::Null => true,
-        Bsdf::TwoSided { front, back } => is_delta(front) || is_delta(back),
-        Bsdf::Blend { first, second, .. } => is_delta(first) || is_delta(second),
-        Bsdf::BumpMap { nested, .. } | Bsdf::NormalMap { nested, .. } => is_delta(nested),
-    }
 }

@@ -2,19 +2,20 @@
 
 use std::path::Path;
 
-use glam::{DMat3, DVec3, Vec2};
+use glam::{DMat3, DMat4, DVec3, Vec2};
 
+use super::material::{Images, Sources, Value};
 use crate::Error;
-use crate::mitsuba::{Description, Emitter, SceneError, Spot};
+use crate::mitsuba::{Description, Emitter, Projector, SceneError, Source, Spot, Texture};
 use crate::path::light::{
-    Background, Constant, DirectionalLight, PointLight, Sky, Source, SpotLight,
+    self, Background, Constant, DirectionalLight, PointLight, ProjectorLight, Sky, SpotLight,
 };
 use crate::path::texture;
 
 /// Light that no shape emits.
 #[derive(Debug)]
 pub(super) struct Surroundings {
-    pub(super) sources: Vec<Source>,
+    pub(super) sources: Vec<light::Source>,
     pub(super) background: Background,
     pub(super) left_out: Vec<String>,
 }
@@ -26,76 +27,135 @@ pub(super) fn load(description: &Description) -> Result<Surroundings, SceneError
         background: Background::None,
         left_out: Vec::new(),
     };
-    for emitter in &description.emitters {
-        if is_dark(emitter) {
-            all.left_out.push("an emitter without power".to_owned());
+    let mut images = Images::default();
+    for Emitter { source, place } in &description.emitters {
+        if is_dark(source) {
+            let element = place.element();
+            all.left_out
+                .push(format!("{element} at {place}, without power"));
             continue;
         }
-        let refused = |e: Error| description.place.error(e);
-        match emitter {
-            Emitter::EnvironmentMap {
+        match source {
+            Source::EnvironmentMap {
                 file,
                 scale,
                 to_world,
             } => {
                 let outward = DMat3::from_mat4(*to_world);
-                match sky(file, *scale, outward).map_err(|e| description.place.error(e))? {
+                match sky(file, *scale, outward).map_err(|e| place.error(e))? {
                     Some(sky) => all.background = Background::Sky(Box::new(sky)),
                     None => all.left_out.push("a black envmap".to_owned()),
                 }
             }
-            Emitter::Constant { radiance } => {
-                let constant = Constant::new(narrow(*radiance)).map_err(refused)?;
+            Source::Constant { radiance } => {
+                let constant = Constant::new(narrow(*radiance)).map_err(|e| place.error(e))?;
                 all.background = Background::Constant(constant);
             }
-            Emitter::Point {
-                position,
-                intensity,
-            } => {
-                let light = PointLight::new(narrow(*position), narrow(*intensity));
-                all.sources.push(Source::Point(light.map_err(refused)?));
-            }
-            Emitter::Directional {
-                direction,
-                irradiance,
-            } => {
-                let light = DirectionalLight::new(narrow(*direction), narrow(*irradiance));
-                all.sources
-                    .push(Source::Directional(light.map_err(refused)?));
-            }
-            Emitter::Spot(spot) => {
-                if spot.texture.is_some() {
-                    return Err(description
-                        .place
-                        .error("a spot with a `texture` is not supported; leave it out"));
-                }
-                all.sources
-                    .push(Source::Spot(spot_light(spot).map_err(refused)?));
+            _ => {
+                let point = without_size(source, &mut images).map_err(|e| place.error(e))?;
+                all.sources.extend(point);
             }
         }
     }
     Ok(all)
 }
 
-fn is_dark(emitter: &Emitter) -> bool {
-    match emitter {
-        Emitter::Point { intensity, .. } => *intensity == DVec3::ZERO,
-        Emitter::Spot(spot) => spot.intensity == DVec3::ZERO,
-        Emitter::Directional { irradiance, .. } => *irradiance == DVec3::ZERO,
-        Emitter::Constant { radiance } => *radiance == DVec3::ZERO,
-        Emitter::EnvironmentMap { scale, .. } => *scale == 0.0,
+/// A source without size; `None` of one that is around the scene.
+fn without_size(source: &Source, images: &mut Images) -> Result<Option<light::Source>, String> {
+    let refused = |e: Error| e.to_string();
+    let made = match source {
+        Source::EnvironmentMap { .. } | Source::Constant { .. } => return Ok(None),
+        Source::Point {
+            position,
+            intensity,
+        } => PointLight::new(narrow(*position), narrow(*intensity)).map(light::Source::Point),
+        Source::Directional {
+            direction,
+            irradiance,
+        } => {
+            let light = DirectionalLight::new(narrow(*direction), narrow(*irradiance));
+            light.map(light::Source::Directional)
+        }
+        Source::Spot(spot) => {
+            return spot_light(spot, images).map(|light| Some(light::Source::Spot(light.into())));
+        }
+        Source::Projector(projector) => {
+            let light = projector_light(projector, images)?;
+            return Ok(Some(light::Source::Projector(light.into())));
+        }
+    };
+    made.map(Some).map_err(refused)
+}
+
+fn is_dark(source: &Source) -> bool {
+    match source {
+        Source::Point { intensity, .. } => *intensity == DVec3::ZERO,
+        Source::Spot(spot) => spot.intensity == DVec3::ZERO,
+        Source::Projector(projector) => {
+            projector.scale == 0.0 || projector.irradiance == Texture::Constant(DVec3::ZERO)
+        }
+        Source::Directional { irradiance, .. } => *irradiance == DVec3::ZERO,
+        Source::Constant { radiance } => *radiance == DVec3::ZERO,
+        Source::EnvironmentMap { scale, .. } => *scale == 0.0,
     }
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-fn spot_light(spot: &Spot) -> Result<SpotLight, Error> {
-    SpotLight::new(
-        narrow(spot.to_world.w_axis.truncate()),
-        narrow(spot.to_world.z_axis.truncate()),
+fn spot_light(spot: &Spot, images: &mut Images) -> Result<SpotLight, String> {
+    let refused = |e: Error| e.to_string();
+    let [x, y, z, position] = columns(&spot.to_world);
+    let light = SpotLight::new(
+        position,
+        z,
         narrow(spot.intensity),
         spot.beam_width as f32,
         spot.cutoff_angle as f32,
     )
+    .map_err(refused)?;
+    match &spot.texture {
+        None => Ok(light),
+        Some(texture) => {
+            let picture = Value::value(texture, &mut Sources::of(images))?;
+            light.projecting(picture, x, y).map_err(refused)
+        }
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+fn projector_light(projector: &Projector, images: &mut Images) -> Result<ProjectorLight, String> {
+    let [x, y, z, position] = columns(&projector.to_world);
+    let picture = Value::value(&projector.irradiance, &mut Sources::of(images))?;
+    let aspect = match &picture {
+        texture::Texture::Bitmap(bitmap) => {
+            let [width, height] = bitmap.size();
+            width as f64 / height as f64
+        }
+        _ => 1.0,
+    };
+    let half = projector.field_of_view.half_width(aspect);
+    // As on the film of a camera, whose x axis goes to the left and whose y axis upwards.
+    let backwards = [x, y].map(|axis| axis.map(|component| -component));
+    let size = [half as f32, (half / aspect) as f32];
+    ProjectorLight::new(
+        position,
+        z,
+        backwards,
+        size,
+        picture,
+        projector.scale as f32,
+    )
+    .map_err(|e| e.to_string())
+}
+
+/// The columns of a transform: where its axes go, and the origin.
+fn columns(transform: &DMat4) -> [[f32; 3]; 4] {
+    let DMat4 {
+        x_axis,
+        y_axis,
+        z_axis,
+        w_axis,
+    } = *transform;
+    [x_axis, y_axis, z_axis, w_axis].map(|column| narrow(column.truncate()))
 }
 
 /// The picture around a scene; `None` if it is all black.

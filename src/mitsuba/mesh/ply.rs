@@ -10,6 +10,7 @@ use ply_rs_bw::ply::{
 };
 
 use super::{Attribute, Mesh, attributes};
+use crate::path::texture;
 
 /// Reads a PLY file, in ASCII or binary of either byte order.
 pub(super) fn read(path: &Path) -> Result<Mesh, String> {
@@ -202,7 +203,12 @@ impl PropertyAccess for Vertex {
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        match scalar(&property) {
+        let value = if is_known(name) {
+            scalar(&property)
+        } else {
+            fraction(&property)
+        };
+        match value {
             Some(value) => self.set_float(name, value),
             None => PropertyAccessResult::Ignored,
         }
@@ -228,7 +234,7 @@ impl PropertyAccess for Face {
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        if let Some(value) = scalar(&property) {
+        if let Some(value) = fraction(&property) {
             self.others.push(value);
             return PropertyAccessResult::Set;
         }
@@ -252,6 +258,24 @@ impl PropertyAccess for Nothing {
     fn new() -> Self {
         Self
     }
+}
+
+/// What a scalar is as an attribute. Integers are fractions of the greatest of their type, encoded as sRGB has it; but bytes
+/// without sign are themselves, as Mitsuba 3.9 has it.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "meshes are in 32-bit floats"
+)]
+fn fraction(property: &Property) -> Option<f32> {
+    let part = match *property {
+        Property::Char(value) => f64::from(value) / f64::from(i8::MAX),
+        Property::Short(value) => f64::from(value) / f64::from(i16::MAX),
+        Property::UShort(value) => f64::from(value) / f64::from(u16::MAX),
+        Property::Int(value) => f64::from(value) / f64::from(i32::MAX),
+        Property::UInt(value) => f64::from(value) / f64::from(u32::MAX),
+        _ => return scalar(property),
+    };
+    Some(texture::Encoding::Srgb.decode(part) as f32)
 }
 
 /// The value of a scalar.

@@ -183,6 +183,7 @@ impl Copies {
             normal: (copied.normals * shading.normal).normalize(),
             du: copied.outward.transform_vector3a(shading.du),
             dv: copied.outward.transform_vector3a(shading.dv),
+            facet: shading.facet,
         }
     }
 }

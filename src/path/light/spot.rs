@@ -1,14 +1,16 @@
 //! Lights without size that shine into a cone.
 
-use glam::Vec3A;
+use glam::{Vec2, Vec3A};
 
 use super::Illumination;
 use super::point::{from_point, place};
+use super::slide::Slide;
 use crate::Error;
+use crate::path::texture::Texture;
 use crate::path::{Surface, color};
 
 /// A point that shines into a cone: with full intensity near the axis, from there falling linearly with the angle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SpotLight {
     position: Vec3A,
     axis: Vec3A,
@@ -20,6 +22,7 @@ pub struct SpotLight {
     cutoff_cosine: f32,
     /// One over the width of the transition, in radians; 0 where there is none.
     per_radian: f32,
+    slide: Option<Slide>,
 }
 
 impl SpotLight {
@@ -57,7 +60,26 @@ impl SpotLight {
             } else {
                 0.0
             },
+            slide: None,
         })
+    }
+
+    /// The same through a slide: times `picture`, whose texture coordinates grow along `across` and `down`. The cone touches the
+    /// edges of their unit square.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for vectors without direction, for a picture that is negative or not finite, and for a cone that ends at
+    /// a right angle to its axis or beyond.
+    pub fn projecting(
+        mut self,
+        picture: Texture,
+        across: [f32; 3],
+        down: [f32; 3],
+    ) -> Result<Self, Error> {
+        let half = Vec2::splat(self.cutoff.tan());
+        self.slide = Some(Slide::new(picture, self.axis, [across, down], half)?);
+        Ok(self)
     }
 
     /// The light that arrives at the surface `from` if nothing is in the way.
@@ -73,6 +95,10 @@ impl SpotLight {
         } else {
             ((self.cutoff - cosine.acos()) * self.per_radian).clamp(0.0, 1.0)
         };
-        from_point(from, self.position, self.intensity * falloff)
+        let mut intensity = self.intensity * falloff;
+        if let Some(slide) = &self.slide {
+            intensity *= slide.color(slide.place(toward));
+        }
+        from_point(from, self.position, intensity)
     }
 }

@@ -3,20 +3,23 @@
 use glam::{Vec3, Vec3A};
 
 use super::{
-    Constant, DirectionalLight, Emission, Environment, Illumination, PointLight, Sky, SpotLight,
+    Constant, DirectionalLight, Emission, Environment, Illumination, PointLight, ProjectorLight,
+    Sky, SpotLight,
 };
 use crate::path::{Surface, color};
 use crate::{Error, Sampler};
 
 /// A source of light without size.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     /// A point that shines everywhere.
     Point(PointLight),
     /// A point that shines into a cone.
-    Spot(SpotLight),
+    Spot(Box<SpotLight>),
     /// Parallel light.
     Directional(DirectionalLight),
+    /// A point that throws a picture.
+    Projector(Box<ProjectorLight>),
 }
 
 impl Source {
@@ -27,6 +30,7 @@ impl Source {
             Self::Point(light) => light.illuminate(from),
             Self::Spot(light) => light.illuminate(from),
             Self::Directional(light) => Some(light.illuminate(from)),
+            Self::Projector(light) => light.illuminate(from),
         }
     }
 }
@@ -177,9 +181,9 @@ mod tests {
             Source::Point(PointLight::new([0.0, 2.0, 0.0], [4.0, 2.0, 1.0]).unwrap()),
             Source::Directional(DirectionalLight::new([0.5, -1.0, 0.2], [0.3, 0.5, 0.9]).unwrap()),
             Source::Point(PointLight::new([3.0, 1.0, 0.0], [0.0; 3]).unwrap()),
-            Source::Spot(
+            Source::Spot(Box::new(
                 SpotLight::new([0.0, 3.0, 1.0], [0.0, -1.0, -0.2], [9.0; 3], 10.0, 40.0).unwrap(),
-            ),
+            )),
         ];
         let all: Vec3A = sources
             .iter()

@@ -6,9 +6,9 @@ use glam::{Vec2, Vec3A};
 
 use super::{Shape, density_of_area};
 use crate::Error;
-use crate::path::Shading;
 use crate::path::frame::{Frame, turn};
 use crate::path::ray::{Ray, Surface, gamma};
+use crate::path::{Facet, Shading};
 
 /// The side of a cylinder, without lids.
 ///
@@ -95,6 +95,13 @@ impl Cylinder {
         }
     }
 
+    /// The same points with texture coordinates that go round the other way.
+    #[must_use]
+    pub fn mirrored(mut self) -> Self {
+        self.axes[1] = -self.axes[1];
+        self
+    }
+
     /// A vector in the axes of the cylinder.
     #[inline]
     fn local(&self, vector: Vec3A) -> [f32; 3] {
@@ -170,6 +177,7 @@ impl Shape for Cylinder {
             normal: surface.normal,
             du: (self.axes[1] * x - self.axes[0] * y) * TAU,
             dv: self.axes[2] * self.length,
+            facet: Facet::default(),
         }
     }
 

@@ -6,9 +6,9 @@ use glam::{Vec2, Vec3A};
 
 use super::{Shape, density_of_area};
 use crate::Error;
-use crate::path::Shading;
 use crate::path::frame::single;
 use crate::path::ray::{Ray, Surface, gamma};
+use crate::path::{Facet, Shading};
 use crate::warp::{Disk as UnitDisk, Warp};
 
 /// A disk or an ellipse: `center + s * first + t * second` with `s^2 + t^2 <= 1`.
@@ -135,6 +135,7 @@ impl Shape for Disk {
             normal: self.normal,
             du: self.first * cosine + self.second * sine,
             dv: (self.second * cosine - self.first * sine) * (TAU * radius),
+            facet: Facet::default(),
         }
     }
 

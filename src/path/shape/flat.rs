@@ -4,8 +4,8 @@ use glam::{Vec2, Vec2Swizzles, Vec3A};
 
 use super::{Shape, density_of_area};
 use crate::Error;
-use crate::path::Shading;
 use crate::path::ray::{Ray, Surface, gamma};
+use crate::path::{Facet, Shading};
 
 /// A triangle or a parallelogram: `corner + s * first_edge + t * second_edge` with `s, t` in `[0, 1]`, and
 /// `s + t <= 1` for a triangle.
@@ -207,6 +207,10 @@ impl Shape for Flat {
             normal: self.normal,
             du,
             dv,
+            facet: Facet {
+                triangle: 0,
+                along: uv,
+            },
         }
     }
 

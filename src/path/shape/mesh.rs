@@ -26,6 +26,8 @@ pub struct Mesh {
     normals: Vec<[f32; 3]>,
     uvs: Vec<[f32; 2]>,
     triangles: Vec<[u32; 3]>,
+    /// Which of the given triangles each is; empty if none was dropped.
+    numbers: Vec<u32>,
     dropped: usize,
     /// Whether the outer side of the surface is that of clockwise corners.
     turned: bool,
@@ -39,9 +41,14 @@ impl Mesh {
     /// [`Error::Refused`] for an index without a vertex, and for a corner that is not finite.
     pub fn new(positions: Vec<[f32; 3]>, triangles: Vec<[u32; 3]>) -> Result<Self, Error> {
         let count = triangles.len();
+        if u32::try_from(count).is_err() {
+            return Err(Error::refused("number of triangles", "below 2^32", count));
+        }
         let mut kept = triangles;
         let mut bad = None;
+        let (mut number, mut numbers, mut dropping) = (0, Vec::new(), false);
         kept.retain(|corners| {
+            number += 1;
             let corner = |index: u32| positions.get(index as usize).copied();
             let [Some(a), Some(b), Some(c)] = corners.map(corner) else {
                 bad.get_or_insert_with(|| {
@@ -57,7 +64,14 @@ impl Mesh {
                 });
                 return false;
             }
-            Flat::triangle(points).is_ok()
+            let usable = Flat::triangle(points).is_ok();
+            if !usable && !dropping {
+                dropping = true;
+                numbers.extend(0..number - 1);
+            } else if usable && dropping {
+                numbers.push(number - 1);
+            }
+            usable
         });
         match bad {
             Some(error) => Err(error),
@@ -67,6 +81,7 @@ impl Mesh {
                 normals: Vec::new(),
                 uvs: Vec::new(),
                 triangles: kept,
+                numbers,
                 turned: false,
             }),
         }
@@ -143,6 +158,10 @@ impl Mesh {
         let plain = flat.shading(surface);
         let [s, t] = plain.uv.to_array();
         let mut shading = plain;
+        shading.facet.triangle = match self.numbers.get(triangle) {
+            Some(&number) => number,
+            None => number(triangle),
+        };
         if !self.normals.is_empty() {
             let [a, b, c] =
                 self.triangles[triangle].map(|index| Vec3A::from(self.normals[index as usize]));
@@ -173,6 +192,11 @@ impl Mesh {
             format_args!("{count} for {}", self.positions.len()),
         ))
     }
+}
+
+/// The number of a triangle: there are fewer than 2^32.
+fn number(triangle: usize) -> u32 {
+    u32::try_from(triangle).unwrap_or(u32::MAX)
 }
 
 fn finite<const N: usize>(name: &'static str, vectors: &[[f32; N]]) -> Result<(), Error> {

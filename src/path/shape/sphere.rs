@@ -6,9 +6,9 @@ use glam::{Vec2, Vec3A};
 
 use super::{Shape, density_of_area};
 use crate::Error;
-use crate::path::Shading;
 use crate::path::frame::{Frame, turn};
 use crate::path::ray::{Ray, Surface, gamma};
+use crate::path::{Facet, Shading};
 
 /// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,8 +16,8 @@ pub struct Sphere {
     center: Vec3A,
     radius: f32,
     squared_radius: f32,
-    /// The x and the z axis of its texture coordinates.
-    axes: [Vec3A; 2],
+    /// The axes of its texture coordinates.
+    axes: [Vec3A; 3],
     /// 1, or -1 if the outer side is inside.
     side: f32,
 }
@@ -50,7 +50,7 @@ impl Sphere {
             center: center_,
             radius,
             squared_radius,
-            axes: [Vec3A::X, Vec3A::Z],
+            axes: [Vec3A::X, Vec3A::Y, Vec3A::Z],
             side: 1.0,
         })
     }
@@ -72,9 +72,16 @@ impl Sphere {
             ));
         }
         Ok(Self {
-            axes: [across.as_vec3a(), pole_64.as_vec3a()],
+            axes: [across, pole_64.cross(across), pole_64].map(|axis| axis.as_vec3a()),
             ..self
         })
+    }
+
+    /// The same points with texture coordinates that go round the other way.
+    #[must_use]
+    pub fn mirrored(mut self) -> Self {
+        self.axes[1] = -self.axes[1];
+        self
     }
 
     /// The same points with the outer side inside, and the same texture coordinates.
@@ -150,9 +157,8 @@ impl Shape for Sphere {
     /// [turned](Sphere::with_axes).
     fn shading(&self, surface: &Surface) -> Shading {
         let outward = surface.normal * self.side;
-        let [first, pole] = self.axes;
-        let second = pole.cross(first);
-        let [x, y, z] = [first, second, pole].map(|axis| axis.dot(outward));
+        let [first, second, pole] = self.axes;
+        let [x, y, z] = self.axes.map(|axis| axis.dot(outward));
         let radius = x.hypot(y);
         // The azimuth of a pole is that of the first axis.
         let [cosine, sine] = if radius > 0.0 {
@@ -171,6 +177,7 @@ impl Shape for Sphere {
             normal: surface.normal,
             du: around * (TAU * radius * self.radius),
             dv: (away * z - pole * radius) * (PI * self.radius),
+            facet: Facet::default(),
         }
     }
 

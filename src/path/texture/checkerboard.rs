@@ -3,6 +3,7 @@
 use glam::{Affine2, Vec2, Vec3A};
 
 use super::{Parameter, Texture};
+use crate::path::Spot;
 
 /// Two textures in turn: in each unit square of the transformed texture coordinates the first one in the quarters
 /// where both coordinates are in the lower half, or both in the upper one, and the second one elsewhere.
@@ -10,13 +11,14 @@ use super::{Parameter, Texture};
 /// As a number, the two change places. So Mitsuba has it, whose pictures are to be met.
 ///
 /// ```
+/// use estimand::path::Spot;
 /// use estimand::path::texture::{Checkerboard, Uniform};
 /// use glam::{Affine2, Vec2};
 ///
 /// let colors = [Uniform::from(0.4).into(), Uniform::from(0.2).into()];
 /// let board = Checkerboard::new(colors, Affine2::from_scale(Vec2::splat(4.0)));
-/// assert_eq!(board.color_at(Vec2::new(0.05, 0.05)).x, 0.4);
-/// assert_eq!(board.color_at(Vec2::new(0.05, 0.2)).x, 0.2);
+/// assert_eq!(board.color(&Spot::new(Vec2::new(0.05, 0.05))).x, 0.4);
+/// assert_eq!(board.color(&Spot::new(Vec2::new(0.05, 0.2))).x, 0.2);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkerboard {
@@ -39,22 +41,22 @@ impl Checkerboard {
         usize::from(upper.test(0) != upper.test(1))
     }
 
-    /// The value at `uv` as linear red, green and blue.
+    /// The value at a place as linear red, green and blue.
     #[inline]
-    pub fn color_at(&self, uv: Vec2) -> Vec3A {
-        self.textures[self.field(uv)].color_at(uv)
+    pub fn color(&self, place: &Spot) -> Vec3A {
+        self.textures[self.field(place.uv)].color(place)
     }
 
-    /// The value at `uv` as a number.
+    /// The value at a place as a number.
     #[inline]
-    pub fn number_at(&self, uv: Vec2) -> f32 {
-        self.textures[1 - self.field(uv)].number_at(uv)
+    pub fn number(&self, place: &Spot) -> f32 {
+        self.textures[1 - self.field(place.uv)].number(place)
     }
 
     /// The derivatives of the number by `u` and `v` within a field.
     #[inline]
-    pub fn slope_at(&self, uv: Vec2) -> Vec2 {
-        self.textures[1 - self.field(uv)].slope_at(uv)
+    pub fn slope(&self, place: &Spot) -> Vec2 {
+        self.textures[1 - self.field(place.uv)].slope(place)
     }
 
     /// The mean number.

@@ -3,6 +3,7 @@
 use glam::Vec3A;
 
 use crate::Error;
+use crate::path::color;
 
 /// What the bytes of an image stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +18,7 @@ pub enum Encoding {
 
 impl Encoding {
     /// The linear value of an encoded fraction.
-    pub(super) fn decode(self, fraction: f64) -> f64 {
+    pub fn decode(self, fraction: f64) -> f64 {
         match self {
             Self::Linear => fraction,
             Self::Srgb if fraction <= 0.04045 => fraction / 12.92,
@@ -25,9 +26,6 @@ impl Encoding {
         }
     }
 }
-
-/// The luminance of linear sRGB, by its second row of the matrix to XYZ, as Mitsuba rounds it.
-const LUMINANCE: Vec3A = Vec3A::new(0.212_671, 0.715_160, 0.072_169);
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Texels {
@@ -110,7 +108,7 @@ impl Texels {
         if self.components == 1 {
             return self.value(row * self.width + column);
         }
-        self.color(column, row).dot(LUMINANCE)
+        self.color(column, row).dot(color::LUMINANCE)
     }
 
     pub(super) fn mean(&self) -> f32 {

@@ -54,6 +54,8 @@ pub mod filter;
 mod frame;
 mod geometry;
 pub mod image;
+#[cfg(feature = "simd")]
+mod lanes;
 pub mod light;
 #[cfg(feature = "simd")]
 mod packet;

@@ -4,6 +4,7 @@ mod copies;
 mod flats;
 mod kind;
 mod node;
+mod probe;
 mod soup;
 mod stack;
 mod sweep;

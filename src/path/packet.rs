@@ -3,7 +3,6 @@
 //! For scenes of few flat shapes that scatter light ideally diffusely and emit it, below a constant sky or none. Every lane has
 //! the bits of [`Paths::radiance`]: the same arithmetic in the same order, the coordinates read in the same order.
 
-mod lanes;
 mod place;
 mod sweep;
 mod walk;

@@ -1,14 +1,13 @@
 //! The inner nodes of a tree: eight boxes each.
 
-use super::flats::{LANES, Lanes, bit, word};
-use crate::path::ray::{Ray, gamma};
+use super::flats::{LANES, Lanes};
 
 /// Up to eight boxes, and what is in each.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Node {
     /// The low ends along the three axes, then the high ones. An empty lane is the box that nothing is in.
-    bounds: [Lanes; 6],
+    pub(super) bounds: [Lanes; 6],
     children: [Child; LANES],
 }
 
@@ -19,6 +18,8 @@ pub(super) struct Child(u32);
 const LEAF: u32 = 1 << 31;
 
 impl Child {
+    pub(super) const ROOT: Self = Self(0);
+
     pub(super) fn node(index: usize) -> Self {
         Self(number(index))
     }
@@ -65,66 +66,5 @@ impl Node {
     #[inline(always)]
     pub(super) fn child(&self, lane: usize) -> Child {
         self.children[lane]
-    }
-}
-
-/// A ray as boxes are asked for.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Probe {
-    origin: [f32; 3],
-    inverse: [f32; 3],
-    /// Which of the bounds of a box it enters through, and leaves through.
-    near: [usize; 3],
-    far: [usize; 3],
-}
-
-/// Where a ray enters boxes.
-pub(super) struct Entry {
-    pub(super) distances: Lanes,
-    /// Which boxes it enters, the first in the lowest bit.
-    pub(super) boxes: u32,
-}
-
-/// What rounding does to the distance of a box.[^ize]
-///
-/// [^ize]: Ize, Thiago (2013). *Robust BVH Ray Traversal*. <https://jcgt.org/published/0002/02/02/>
-pub(super) const WIDER: f32 = 1.0 + 2.0 * gamma(3);
-
-impl Probe {
-    #[inline(always)]
-    pub(super) fn new(ray: &Ray) -> Self {
-        let inverse = ray.direction.recip().to_array();
-        let near = core::array::from_fn(|axis| axis + 3 * usize::from(inverse[axis] < 0.0));
-        Self {
-            origin: ray.origin.to_array(),
-            inverse,
-            near,
-            far: core::array::from_fn(|axis| 2 * axis + 3 - near[axis]),
-        }
-    }
-
-    /// The boxes of a node that the ray enters before `limit`.
-    #[inline(always)]
-    pub(super) fn enter(&self, node: &Node, limit: f32) -> Entry {
-        let near = self.near.map(|bound| &node.bounds[bound]);
-        let far = self.far.map(|bound| &node.bounds[bound]);
-        let mut distances = [0.0; LANES];
-        let mut inside = [0; LANES];
-        for lane in 0..LANES {
-            let (mut start, mut end) = (0.0, limit);
-            for axis in 0..3 {
-                // NaN, of a ray within the plane of a side, tells nothing.
-                let enters = (near[axis][lane] - self.origin[axis]) * self.inverse[axis];
-                let leaves = (far[axis][lane] - self.origin[axis]) * self.inverse[axis];
-                start = if enters > start { enters } else { start };
-                end = if leaves < end { leaves } else { end };
-            }
-            distances[lane] = start;
-            inside[lane] = bit(lane, start <= end * WIDER);
-        }
-        Entry {
-            distances,
-            boxes: word(inside),
-        }
     }
 }

@@ -4,7 +4,8 @@ use glam::Vec3A;
 
 use super::Found;
 use super::flats::Flats;
-use super::tree::Tree;
+use super::probe::Probe;
+use super::tree::{Leaves, Tree};
 use crate::path::Shading;
 use crate::path::ray::{Ray, Surface};
 use crate::path::shape::{Flat, Mesh, Shape};
@@ -50,22 +51,14 @@ impl Soup {
 
     #[inline]
     pub(super) fn nearest(&self, ray: &Ray, limit: f32) -> Option<Found> {
-        self.tree.nearest_in_leaves(
-            ray,
-            limit,
-            #[inline(always)]
-            |leaf, limit| self.blocks[leaf].nearest(ray, limit),
-        )
+        let mut leaves = Blocks(&self.blocks);
+        self.tree.nearest_in_leaves(ray, limit, &mut leaves)
     }
 
     #[inline]
     pub(super) fn occluded(&self, ray: &Ray, limit: f32) -> bool {
-        self.tree.any_in_leaves(
-            ray,
-            limit,
-            #[inline(always)]
-            |leaf| self.blocks[leaf].occlude(ray, limit),
-        )
+        let mut leaves = Blocks(&self.blocks);
+        self.tree.any_in_leaves(ray, limit, &mut leaves)
     }
 
     #[inline]
@@ -83,5 +76,20 @@ impl Soup {
         let mesh = self.mesh(triangle);
         let within = triangle - self.starts[mesh];
         self.meshes[mesh].shading(within, &self.flats[triangle], surface)
+    }
+}
+
+/// The triangles of each leaf.
+struct Blocks<'a>(&'a [Flats]);
+
+impl Leaves for Blocks<'_> {
+    #[inline(always)]
+    fn nearest(&mut self, probe: &impl Probe, leaf: usize, limit: f32) -> Option<(usize, f32)> {
+        probe.meet(&self.0[leaf], limit).nearest()
+    }
+
+    #[inline(always)]
+    fn any(&mut self, probe: &impl Probe, leaf: usize, limit: f32) -> bool {
+        probe.meet(&self.0[leaf], limit).which != 0
     }
 }

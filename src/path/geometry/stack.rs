@@ -1,12 +1,13 @@
 //! What a walk through a tree still has to visit.
 
-use super::node::{Child, Entry, Node};
+use super::node::{Child, Node};
+use super::probe::{Met, WIDER};
 
 /// A box that a ray enters at a distance.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Visit {
-    pub(super) child: Child,
-    pub(super) distance: f32,
+struct Visit {
+    child: Child,
+    distance: f32,
 }
 
 /// Boxes to be visited, the nearest of every node last.
@@ -18,50 +19,76 @@ pub(super) struct Stack {
     below: Vec<Visit>,
 }
 
+/// A power of two.
 const ROOM: usize = 64;
 
 impl Stack {
+    pub(super) const EMPTY: Self = Self {
+        visits: [Visit {
+            child: Child::ROOT,
+            distance: 0.0,
+        }; ROOM],
+        count: 0,
+        below: Vec::new(),
+    };
+
+    /// The next box that is entered before `limit`.
     #[inline(always)]
-    pub(super) fn new(root: Child) -> Self {
-        let mut visits = [Visit::default(); ROOM];
-        visits[0].child = root;
-        Self {
-            visits,
-            count: 1,
-            below: Vec::new(),
+    pub(super) fn pop(&mut self, limit: f32) -> Option<Child> {
+        loop {
+            let visit = if self.count == 0 {
+                self.below.pop()?
+            } else {
+                self.count -= 1;
+                self.visits[self.count % ROOM]
+            };
+            if visit.distance <= limit * WIDER {
+                return Some(visit.child);
+            }
         }
     }
 
+    /// The nearest box of a node that a ray enters; the others are added.
     #[inline(always)]
-    pub(super) fn pop(&mut self) -> Option<Visit> {
-        if self.count == 0 {
-            return self.below.pop();
-        }
-        self.count -= 1;
-        Some(self.visits[self.count])
-    }
-
-    /// Adds the boxes of a node that a ray enters.
-    #[inline(always)]
-    pub(super) fn push(&mut self, node: &Node, entry: &Entry) {
+    pub(super) fn push(&mut self, node: &Node, met: &Met) -> Option<Child> {
+        let mut lanes = met.lanes().map(
+            #[inline(always)]
+            |lane| Visit {
+                child: node.child(lane),
+                distance: met.distances[lane],
+            },
+        );
+        let mut nearest = lanes.next()?;
         if self.count + 8 > ROOM {
             self.spill();
         }
         let first = self.count;
-        let mut left = entry.boxes;
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize;
-            left &= left - 1;
-            let visit = Visit {
-                child: node.child(lane),
-                distance: entry.distances[lane],
-            };
+        for mut visit in lanes {
+            if visit.distance < nearest.distance {
+                core::mem::swap(&mut visit, &mut nearest);
+            }
             let mut place = self.count;
-            while place > first && self.visits[place - 1].distance < visit.distance {
-                self.visits[place] = self.visits[place - 1];
+            while place > first && self.visits[(place - 1) % ROOM].distance < visit.distance {
+                self.visits[place % ROOM] = self.visits[(place - 1) % ROOM];
                 place -= 1;
             }
-            self.visits[place] = visit;
+            self.visits[place % ROOM] = visit;
+            self.count += 1;
+        }
+        Some(nearest.child)
+    }
+
+    /// Adds the boxes of a node that a ray enters in any order.
+    #[inline(always)]
+    pub(super) fn add(&mut self, node: &Node, met: &Met) {
+        if self.count + 8 > ROOM {
+            self.spill();
+        }
+        for lane in met.lanes() {
+            self.visits[self.count % ROOM] = Visit {
+                child: node.child(lane),
+                distance: met.distances[lane],
+            };
             self.count += 1;
         }
     }
@@ -83,19 +110,26 @@ mod tests {
         for lane in 0..8 {
             node.set(lane, [[0.0; 3]; 2], Child::leaf(lane));
         }
-        let entry = Entry {
+        let met = Met {
             distances: [3.0, 1.0, 7.0, 0.0, 2.0, 6.0, 5.0, 4.0],
-            boxes: 0b1110_1111,
+            which: 0b1110_1111,
         };
-        let mut stack = Stack::new(Child::node(5));
+        let mut stack = Stack::EMPTY;
         for _ in 0..30 {
-            stack.push(&node, &entry);
+            assert_eq!(stack.push(&node, &met), Some(Child::leaf(3)));
         }
-        for _ in 0..30 {
-            let leaves: Vec<_> = (0..7).map(|_| stack.pop().unwrap().child.index()).collect();
-            assert_eq!(leaves, [3, 1, 0, 7, 6, 5, 2]);
+        let mut pop = |limit| stack.pop(limit).map(Child::index);
+        for _ in 0..20 {
+            for lane in [1, 0, 7, 6, 5, 2] {
+                assert_eq!(pop(f32::INFINITY), Some(lane));
+            }
         }
-        assert_eq!(stack.pop().unwrap().child, Child::node(5));
-        assert!(stack.pop().is_none());
+        // Those farther than the limit are passed over.
+        for _ in 0..10 {
+            for lane in [1, 0, 7, 6] {
+                assert_eq!(pop(5.0), Some(lane));
+            }
+        }
+        assert_eq!(pop(5.0), None);
     }
 }

@@ -3,6 +3,9 @@
 use super::Found;
 use super::flats::{Flats, LANES};
 use super::kind::{Kind, divides};
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+use super::probe::Vectors;
+use super::probe::{Plain, Probe};
 use crate::path::ray::Ray;
 use crate::path::shape::{Primitive, Shape};
 
@@ -16,15 +19,8 @@ pub(in crate::path) struct Sweep {
     pub(in crate::path) flat_shapes: Vec<usize>,
     /// The shapes that are not flat, and which they are.
     others: Vec<(usize, Primitive)>,
-    #[cfg(feature = "simd")]
-    arch: pulp::Arch,
-}
-
-/// The place, in the order of the flat shapes, of a lane of a block.
-#[inline(always)]
-#[expect(clippy::cast_possible_truncation, reason = "a few blocks")]
-fn slot(block: f32, lane: usize) -> usize {
-    block as usize * LANES + lane
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    simd: Option<pulp::x86::V3>,
 }
 
 impl Sweep {
@@ -44,19 +40,15 @@ impl Sweep {
             dividing: Flats::blocks(dividing),
             flat_shapes: flats.iter().map(|&(index, _)| index).collect(),
             others,
-            #[cfg(feature = "simd")]
-            arch: pulp::Arch::new(),
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            simd: pulp::x86::V3::try_new(),
         }
     }
 
     #[inline]
     pub(super) fn nearest(&self, ray: &Ray) -> Option<Found> {
-        #[cfg(feature = "simd")]
-        let flat = self.arch.dispatch(Nearest(self, ray));
-        #[cfg(not(feature = "simd"))]
-        let flat = self.nearest_flat(ray);
-        let mut limit = flat.map_or(f32::INFINITY, |found| found.distance);
-        let mut nearest = flat;
+        let mut nearest = self.nearest_flat(ray);
+        let mut limit = nearest.map_or(f32::INFINITY, |found| found.distance);
         for &(shape, other) in &self.others {
             if let Some(distance) = other.intersect(ray, limit) {
                 limit = distance;
@@ -79,86 +71,60 @@ impl Sweep {
 
     #[inline]
     fn any(&self, flats: &[Flats], ray: &Ray, limit: f32) -> bool {
-        #[cfg(feature = "simd")]
-        let flat = self.arch.dispatch(Occluded(flats, ray, limit));
-        #[cfg(not(feature = "simd"))]
-        let flat = any_occludes(flats, ray, limit);
         let mut others = self.others.iter();
-        flat || others.any(|(_, other)| other.intersect(ray, limit).is_some())
+        self.any_flat(flats, ray, limit)
+            || others.any(|(_, other)| other.intersect(ray, limit).is_some())
     }
 
     /// The nearest flat shape; of several at the same distance the first.
-    #[inline(always)]
+    #[inline]
     fn nearest_flat(&self, ray: &Ray) -> Option<Found> {
-        let mut nearest = [f32::INFINITY; LANES];
-        // The block of each, as a number of the same width and kind: so both are selected alike.
-        let mut blocks = [0.0_f32; LANES];
-        let mut block = 0.0;
-        for flats in &self.flats {
-            let distances = flats.distances(ray, f32::INFINITY);
-            for lane in 0..LANES {
-                let nearer = distances[lane] < nearest[lane];
-                nearest[lane] = if nearer {
-                    distances[lane]
-                } else {
-                    nearest[lane]
-                };
-                blocks[lane] = if nearer { block } else { blocks[lane] };
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if let Some(simd) = self.simd {
+            return simd.vectorize(
+                #[inline(always)]
+                || self.nearest_of(&self.flats, &Vectors::new(simd, ray)),
+            );
+        }
+        self.nearest_of(&self.flats, &Plain::new(ray))
+    }
+
+    #[inline]
+    fn any_flat(&self, flats: &[Flats], ray: &Ray, limit: f32) -> bool {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if let Some(simd) = self.simd {
+            return simd.vectorize(
+                #[inline(always)]
+                || any_of(flats, &Vectors::new(simd, ray), limit),
+            );
+        }
+        any_of(flats, &Plain::new(ray), limit)
+    }
+
+    #[inline(always)]
+    fn nearest_of(&self, blocks: &[Flats], probe: &impl Probe) -> Option<Found> {
+        let mut limit = f32::INFINITY;
+        let mut nearest = None;
+        for (block, flats) in blocks.iter().enumerate() {
+            if let Some((lane, distance)) = probe.meet(flats, limit).nearest() {
+                limit = distance;
+                nearest = Some(block * LANES + lane);
             }
-            block += 1.0;
         }
-        let distance = nearest
-            .iter()
-            .fold(f32::INFINITY, |least, &d| if d < least { d } else { least });
-        if distance == f32::INFINITY {
-            return None;
-        }
-        (0..LANES)
-            .filter(|&lane| nearest[lane] == distance)
-            .map(|lane| slot(blocks[lane], lane))
-            .min()
-            .map(|slot| Found {
-                shape: self.flat_shapes[slot],
-                distance,
-            })
+        nearest.map(|place| Found {
+            shape: self.flat_shapes[place],
+            distance: limit,
+        })
     }
 }
 
 #[inline(always)]
-fn any_occludes(blocks: &[Flats], ray: &Ray, limit: f32) -> bool {
+fn any_of(blocks: &[Flats], probe: &impl Probe, limit: f32) -> bool {
     // A loop, not `any`: its closure would not be compiled for the machine at hand.
     for flats in blocks {
-        if flats.occlude(ray, limit) {
+        if probe.meet(flats, limit).which != 0 {
             return true;
         }
     }
     false
-}
-
-/// [`Sweep::nearest_flat`] in the vector code of the machine at hand.
-#[cfg(feature = "simd")]
-struct Nearest<'a>(&'a Sweep, &'a Ray);
-
-#[cfg(feature = "simd")]
-impl pulp::NullaryFnOnce for Nearest<'_> {
-    type Output = Option<Found>;
-
-    #[inline(always)]
-    fn call(self) -> Option<Found> {
-        self.0.nearest_flat(self.1)
-    }
-}
-
-/// [`any_occludes`] in the vector code of the machine at hand.
-#[cfg(feature = "simd")]
-struct Occluded<'a>(&'a [Flats], &'a Ray, f32);
-
-#[cfg(feature = "simd")]
-impl pulp::NullaryFnOnce for Occluded<'_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn call(self) -> bool {
-        any_occludes(self.0, self.1, self.2)
-    }
 }

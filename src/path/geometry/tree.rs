@@ -10,7 +10,10 @@ use obvhs::bvh2::builder::build_bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 
 use super::flats::LANES;
-use super::node::{Child, Node, Probe, WIDER};
+use super::node::{Child, Node};
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+use super::probe::Vectors;
+use super::probe::{Plain, Probe};
 use super::stack::Stack;
 use super::{Found, around};
 use crate::path::ray::{Ray, gamma};
@@ -22,8 +25,17 @@ use crate::path::shape::Shape;
 pub(super) struct Tree {
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
-    #[cfg(feature = "simd")]
-    arch: pulp::Arch,
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    simd: Option<pulp::x86::V3>,
+}
+
+/// What is in the leaves of a tree.
+pub(super) trait Leaves {
+    /// The place in a leaf of the nearest thing that is met before `limit`, and its distance.
+    fn nearest(&mut self, probe: &impl Probe, leaf: usize, limit: f32) -> Option<(usize, f32)>;
+
+    /// Whether anything in a leaf is met before `limit`.
+    fn any(&mut self, probe: &impl Probe, leaf: usize, limit: f32) -> bool;
 }
 
 /// The shapes of a leaf; [`NONE`] where there are fewer than eight.
@@ -70,8 +82,8 @@ impl Tree {
         let mut tree = Self {
             nodes: vec![Node::EMPTY],
             leaves: Vec::new(),
-            #[cfg(feature = "simd")]
-            arch: pulp::Arch::new(),
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            simd: pulp::x86::V3::try_new(),
         };
         let mut open = vec![(0, vec![binary.nodes[0]])];
         while let Some((place, mut boxes)) = open.pop() {
@@ -132,21 +144,13 @@ impl Tree {
         &self,
         ray: &Ray,
         limit: f32,
-        mut meet: impl FnMut(usize, f32) -> Option<f32>,
+        meet: impl FnMut(usize, f32) -> Option<f32>,
     ) -> Option<Found> {
-        self.nearest_in_leaves(ray, limit, |leaf, mut limit| {
-            let mut nearest = None;
-            for (lane, &shape) in self.leaves[leaf].iter().enumerate() {
-                if shape == NONE {
-                    break;
-                }
-                if let Some(distance) = meet(shape as usize, limit) {
-                    limit = distance;
-                    nearest = Some((lane, distance));
-                }
-            }
-            nearest
-        })
+        let mut each = Each {
+            leaves: &self.leaves,
+            meet,
+        };
+        self.nearest_in_leaves(ray, limit, &mut each)
     }
 
     /// Whether any of what is in the boxes is met before `limit`.
@@ -157,82 +161,121 @@ impl Tree {
         limit: f32,
         mut meet: impl FnMut(usize, f32) -> bool,
     ) -> bool {
-        self.any_in_leaves(ray, limit, |leaf| {
-            let mut shapes = self.leaves[leaf].iter().take_while(|&&shape| shape != NONE);
-            shapes.any(|&shape| meet(shape as usize, limit))
-        })
+        let mut each = Each {
+            leaves: &self.leaves,
+            meet: |shape, limit| meet(shape, limit).then_some(0.0),
+        };
+        self.any_in_leaves(ray, limit, &mut each)
     }
 
-    /// The same leaf by leaf: `meet` returns the place in a leaf and the distance.
+    /// The same leaf by leaf.
     #[inline]
     pub(super) fn nearest_in_leaves(
         &self,
         ray: &Ray,
         limit: f32,
-        mut meet: impl FnMut(usize, f32) -> Option<(usize, f32)>,
+        leaves: &mut impl Leaves,
     ) -> Option<Found> {
-        self.vectorised(
-            #[inline(always)]
-            || {
-                let probe = Probe::new(ray);
-                let mut limit = limit;
-                let mut nearest = None;
-                let mut stack = Stack::new(Child::node(0));
-                while let Some(visit) = stack.pop() {
-                    if visit.distance > limit * WIDER {
-                        continue;
-                    }
-                    let index = visit.child.index();
-                    if !visit.child.is_leaf() {
-                        let node = &self.nodes[index];
-                        stack.push(node, &probe.enter(node, limit));
-                    } else if let Some((lane, distance)) = meet(index, limit) {
-                        limit = distance;
-                        nearest = Some((index, lane));
-                    }
-                }
-                nearest.map(|(leaf, lane)| Found {
-                    shape: self.leaves[leaf][lane] as usize,
-                    distance: limit,
-                })
-            },
-        )
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if let Some(simd) = self.simd {
+            return simd.vectorize(
+                #[inline(always)]
+                || self.walk_to_nearest(&Vectors::new(simd, ray), limit, leaves),
+            );
+        }
+        self.walk_to_nearest(&Plain::new(ray), limit, leaves)
     }
 
-    /// Whether any leaf holds something that is met: `meet` says whether one does.
+    /// Whether any leaf holds something that is met.
     #[inline]
-    pub(super) fn any_in_leaves(
-        &self,
-        ray: &Ray,
-        limit: f32,
-        mut meet: impl FnMut(usize) -> bool,
-    ) -> bool {
-        self.vectorised(
-            #[inline(always)]
-            || {
-                let probe = Probe::new(ray);
-                let mut stack = Stack::new(Child::node(0));
-                while let Some(visit) = stack.pop() {
-                    let index = visit.child.index();
-                    if !visit.child.is_leaf() {
-                        let node = &self.nodes[index];
-                        stack.push(node, &probe.enter(node, limit));
-                    } else if meet(index) {
-                        return true;
-                    }
-                }
-                false
-            },
-        )
+    pub(super) fn any_in_leaves(&self, ray: &Ray, limit: f32, leaves: &mut impl Leaves) -> bool {
+        #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+        if let Some(simd) = self.simd {
+            return simd.vectorize(
+                #[inline(always)]
+                || self.walk_to_any(&Vectors::new(simd, ray), limit, leaves),
+            );
+        }
+        self.walk_to_any(&Plain::new(ray), limit, leaves)
     }
 
-    /// Runs a walk in the vector code of the machine at hand.
     #[inline(always)]
-    fn vectorised<R>(&self, walk: impl FnOnce() -> R) -> R {
-        #[cfg(feature = "simd")]
-        return self.arch.dispatch(walk);
-        #[cfg(not(feature = "simd"))]
-        walk()
+    fn walk_to_nearest(
+        &self,
+        probe: &impl Probe,
+        mut limit: f32,
+        leaves: &mut impl Leaves,
+    ) -> Option<Found> {
+        let mut nearest = None;
+        let mut stack = Stack::EMPTY;
+        let mut next = Some(Child::ROOT);
+        while let Some(child) = next {
+            let index = child.index();
+            next = if child.is_leaf() {
+                if let Some((lane, distance)) = leaves.nearest(probe, index, limit) {
+                    limit = distance;
+                    nearest = Some((index, lane));
+                }
+                None
+            } else {
+                let node = &self.nodes[index];
+                stack.push(node, &probe.enter(node, limit))
+            };
+            next = next.or_else(
+                #[inline(always)]
+                || stack.pop(limit),
+            );
+        }
+        nearest.map(|(leaf, lane)| Found {
+            shape: self.leaves[leaf][lane] as usize,
+            distance: limit,
+        })
+    }
+
+    #[inline(always)]
+    fn walk_to_any(&self, probe: &impl Probe, limit: f32, leaves: &mut impl Leaves) -> bool {
+        let mut stack = Stack::EMPTY;
+        let mut next = Some(Child::ROOT);
+        while let Some(child) = next {
+            let index = child.index();
+            if !child.is_leaf() {
+                let node = &self.nodes[index];
+                stack.add(node, &probe.enter(node, limit));
+            } else if leaves.any(probe, index, limit) {
+                return true;
+            }
+            next = stack.pop(limit);
+        }
+        false
+    }
+}
+
+/// Things that are asked one by one, by a function.
+struct Each<'a, F> {
+    leaves: &'a [Leaf],
+    meet: F,
+}
+
+impl<F: FnMut(usize, f32) -> Option<f32>> Leaves for Each<'_, F> {
+    #[inline(always)]
+    fn nearest(&mut self, _: &impl Probe, leaf: usize, mut limit: f32) -> Option<(usize, f32)> {
+        let mut nearest = None;
+        for (lane, &shape) in self.leaves[leaf].iter().enumerate() {
+            if shape == NONE {
+                break;
+            }
+            if let Some(distance) = (self.meet)(shape as usize, limit) {
+                limit = distance;
+                nearest = Some((lane, distance));
+            }
+        }
+        nearest
+    }
+
+    #[inline(always)]
+    fn any(&mut self, _: &impl Probe, leaf: usize, limit: f32) -> bool {
+        let mut shapes = self.leaves[leaf].iter().take_while(|&&shape| shape != NONE);
+        shapes.any(|&shape| (self.meet)(shape as usize, limit).is_some())
     }
 }
 

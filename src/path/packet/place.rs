@@ -3,7 +3,7 @@
 use glam::Vec3A;
 use pulp::Simd;
 
-use super::lanes::{Real, Row, Vector, WIDEST};
+use crate::path::lanes::{Real, Row, Vector, WIDEST};
 use crate::path::shape::Flat;
 
 /// At most so many shapes: a power of two.

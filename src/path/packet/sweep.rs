@@ -3,8 +3,8 @@
 use glam::Vec3A;
 use pulp::Simd;
 
-use super::lanes::{Index, Mask, Real, Vector};
 use crate::path::geometry::{Kind, axis};
+use crate::path::lanes::{Index, Mask, Real, Vector};
 use crate::path::shape::Flat;
 
 /// The shapes, by how simple their equations are.

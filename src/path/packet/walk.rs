@@ -5,10 +5,10 @@ use core::f32::consts::{FRAC_1_PI, FRAC_PI_4};
 use glam::{Vec3, Vec3A};
 use pulp::{Simd, WithSimd};
 
-use super::lanes::{Mask, Real, Row, Vector, WIDEST};
 use super::{Packet, Start};
 use crate::Sampler;
 use crate::path::frame::single;
+use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
 use crate::path::radiance::play;
 use crate::path::{Paths, gamma};
 

@@ -9,58 +9,58 @@ use glam::Vec3A;
 use pulp::Simd;
 
 /// The widest vectors there are.
-pub(super) const WIDEST: usize = 16;
+pub(in crate::path) const WIDEST: usize = 16;
 
 /// Room for a number for each lane, to be written and read lane by lane.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(super) struct Row<T>(pub(super) [T; WIDEST]);
+pub(in crate::path) struct Row<T>(pub(super) [T; WIDEST]);
 
 impl Row<f32> {
-    pub(super) const ZERO: Self = Self([0.0; WIDEST]);
+    pub(in crate::path) const ZERO: Self = Self([0.0; WIDEST]);
 }
 
 impl Row<u32> {
-    pub(super) const ZERO: Self = Self([0; WIDEST]);
+    pub(in crate::path) const ZERO: Self = Self([0; WIDEST]);
 }
 
 /// A number a lane.
 #[derive(Clone, Copy)]
-pub(super) struct Real<S: Simd> {
+pub(in crate::path) struct Real<S: Simd> {
     simd: S,
     lanes: S::f32s,
 }
 
 /// A truth value a lane.
 #[derive(Clone, Copy)]
-pub(super) struct Mask<S: Simd> {
+pub(in crate::path) struct Mask<S: Simd> {
     simd: S,
     lanes: S::m32s,
 }
 
 /// The number of a shape a lane.
 #[derive(Clone, Copy)]
-pub(super) struct Index<S: Simd> {
+pub(in crate::path) struct Index<S: Simd> {
     lanes: S::u32s,
 }
 
 impl<S: Simd> Index<S> {
     #[inline(always)]
-    pub(super) fn splat(simd: S, number: u32) -> Self {
+    pub(in crate::path) fn splat(simd: S, number: u32) -> Self {
         Self {
             lanes: simd.splat_u32s(number),
         }
     }
 
     #[inline(always)]
-    pub(super) fn store(self, row: &mut Row<u32>) {
+    pub(in crate::path) fn store(self, row: &mut Row<u32>) {
         S::as_mut_simd_u32s(&mut row.0).0[0] = self.lanes;
     }
 }
 
 impl<S: Simd> Real<S> {
     #[inline(always)]
-    pub(super) fn splat(simd: S, number: f32) -> Self {
+    pub(in crate::path) fn splat(simd: S, number: f32) -> Self {
         Self {
             simd,
             lanes: simd.splat_f32s(number),
@@ -68,15 +68,24 @@ impl<S: Simd> Real<S> {
     }
 
     #[inline(always)]
-    pub(super) fn load(simd: S, row: &Row<f32>) -> Self {
+    pub(in crate::path) fn load(simd: S, row: &Row<f32>) -> Self {
         Self {
             simd,
             lanes: S::as_simd_f32s(&row.0).0[0],
         }
     }
 
+    /// The numbers of vectors of eight lanes.
     #[inline(always)]
-    pub(super) fn store(self, row: &mut Row<f32>) {
+    pub(in crate::path) fn of(simd: S, numbers: &[f32; 8]) -> Self {
+        Self {
+            simd,
+            lanes: S::as_simd_f32s(numbers).0[0],
+        }
+    }
+
+    #[inline(always)]
+    pub(in crate::path) fn store(self, row: &mut Row<f32>) {
         S::as_mut_simd_f32s(&mut row.0).0[0] = self.lanes;
     }
 
@@ -97,29 +106,29 @@ impl<S: Simd> Real<S> {
     }
 
     #[inline(always)]
-    pub(super) fn simd(self) -> S {
+    pub(in crate::path) fn simd(self) -> S {
         self.simd
     }
 
     /// The same number in all lanes.
     #[inline(always)]
-    pub(super) fn all(self, number: f32) -> Self {
+    pub(in crate::path) fn all(self, number: f32) -> Self {
         Self::splat(self.simd, number)
     }
 
     #[inline(always)]
-    pub(super) fn abs(self) -> Self {
+    pub(in crate::path) fn abs(self) -> Self {
         self.make(self.simd.abs_f32s(self.lanes))
     }
 
     #[inline(always)]
-    pub(super) fn sqrt(self) -> Self {
+    pub(in crate::path) fn sqrt(self) -> Self {
         self.make(self.simd.sqrt_f32s(self.lanes))
     }
 
     /// The size of this number with the sign of another.
     #[inline(always)]
-    pub(super) fn copysign(self, sign: Self) -> Self {
+    pub(in crate::path) fn copysign(self, sign: Self) -> Self {
         let simd = self.simd;
         let bit = simd.splat_f32s(-0.0);
         let size = simd.and_f32s(simd.not_f32s(bit), self.lanes);
@@ -127,39 +136,39 @@ impl<S: Simd> Real<S> {
     }
 
     #[inline(always)]
-    pub(super) fn lt(self, other: Self) -> Mask<S> {
+    pub(in crate::path) fn lt(self, other: Self) -> Mask<S> {
         self.mask(self.simd.less_than_f32s(self.lanes, other.lanes))
     }
 
     #[inline(always)]
-    pub(super) fn le(self, other: Self) -> Mask<S> {
+    pub(in crate::path) fn le(self, other: Self) -> Mask<S> {
         self.mask(self.simd.less_than_or_equal_f32s(self.lanes, other.lanes))
     }
 
     #[inline(always)]
-    pub(super) fn gt(self, other: Self) -> Mask<S> {
+    pub(in crate::path) fn gt(self, other: Self) -> Mask<S> {
         other.lt(self)
     }
 
     #[inline(always)]
-    pub(super) fn ge(self, other: Self) -> Mask<S> {
+    pub(in crate::path) fn ge(self, other: Self) -> Mask<S> {
         other.le(self)
     }
 
     #[inline(always)]
-    pub(super) fn eq(self, other: Self) -> Mask<S> {
+    pub(in crate::path) fn eq(self, other: Self) -> Mask<S> {
         self.mask(self.simd.equal_f32s(self.lanes, other.lanes))
     }
 
     /// The larger number; the other if this one is NaN.
     #[inline(always)]
-    pub(super) fn max(self, other: Self) -> Self {
+    pub(in crate::path) fn max(self, other: Self) -> Self {
         self.gt(other).select(self, other)
     }
 
     /// The smaller number; the other if this one is NaN.
     #[inline(always)]
-    pub(super) fn min(self, other: Self) -> Self {
+    pub(in crate::path) fn min(self, other: Self) -> Self {
         self.lt(other).select(self, other)
     }
 }
@@ -167,13 +176,13 @@ impl<S: Simd> Real<S> {
 impl<S: Simd> Mask<S> {
     /// `yes` where it holds, `no` elsewhere.
     #[inline(always)]
-    pub(super) fn select(self, yes: Real<S>, no: Real<S>) -> Real<S> {
+    pub(in crate::path) fn select(self, yes: Real<S>, no: Real<S>) -> Real<S> {
         yes.make(self.simd.select_f32s(self.lanes, yes.lanes, no.lanes))
     }
 
     /// `yes` where it holds, `no` elsewhere.
     #[inline(always)]
-    pub(super) fn index(self, yes: Index<S>, no: Index<S>) -> Index<S> {
+    pub(in crate::path) fn index(self, yes: Index<S>, no: Index<S>) -> Index<S> {
         Index {
             lanes: self.simd.select_u32s(self.lanes, yes.lanes, no.lanes),
         }
@@ -181,7 +190,7 @@ impl<S: Simd> Mask<S> {
 
     /// 1 where it holds, 0 elsewhere, to be read lane by lane.
     #[inline(always)]
-    pub(super) fn row(self, simd: S) -> Row<f32> {
+    pub(in crate::path) fn row(self, simd: S) -> Row<f32> {
         let mut row = Row::<f32>::ZERO;
         let (yes, no) = (Real::splat(simd, 1.0), Real::splat(simd, 0.0));
         self.select(yes, no).store(&mut row);
@@ -190,8 +199,26 @@ impl<S: Simd> Mask<S> {
 
     /// Whether it holds in any lane.
     #[inline(always)]
-    pub(super) fn any(self) -> bool {
+    pub(in crate::path) fn any(self) -> bool {
         self.simd.first_true_m32s(self.lanes) < S::F32_LANES
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Real<pulp::x86::V3> {
+    #[inline(always)]
+    pub(in crate::path) fn eight(self) -> [f32; 8] {
+        pulp::cast(self.lanes)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Mask<pulp::x86::V3> {
+    /// A bit for each lane, the first the lowest.
+    #[inline(always)]
+    pub(in crate::path) fn bits(self) -> u32 {
+        let bits = self.simd.avx._mm256_movemask_ps(pulp::cast(self.lanes));
+        bits.cast_unsigned()
     }
 }
 
@@ -275,16 +302,16 @@ impl<S: Simd> Neg for Real<S> {
 
 /// A vector a lane.
 #[derive(Clone, Copy)]
-pub(super) struct Vector<S: Simd> {
-    pub(super) x: Real<S>,
-    pub(super) y: Real<S>,
-    pub(super) z: Real<S>,
+pub(in crate::path) struct Vector<S: Simd> {
+    pub(in crate::path) x: Real<S>,
+    pub(in crate::path) y: Real<S>,
+    pub(in crate::path) z: Real<S>,
 }
 
 impl<S: Simd> Vector<S> {
     /// The same vector in all lanes.
     #[inline(always)]
-    pub(super) fn splat(simd: S, vector: Vec3A) -> Self {
+    pub(in crate::path) fn splat(simd: S, vector: Vec3A) -> Self {
         Self {
             x: Real::splat(simd, vector.x),
             y: Real::splat(simd, vector.y),
@@ -293,7 +320,7 @@ impl<S: Simd> Vector<S> {
     }
 
     #[inline(always)]
-    pub(super) fn load(simd: S, [x, y, z]: &[Row<f32>; 3]) -> Self {
+    pub(in crate::path) fn load(simd: S, [x, y, z]: &[Row<f32>; 3]) -> Self {
         Self {
             x: Real::load(simd, x),
             y: Real::load(simd, y),
@@ -302,7 +329,7 @@ impl<S: Simd> Vector<S> {
     }
 
     #[inline(always)]
-    pub(super) fn store(self, [x, y, z]: &mut [Row<f32>; 3]) {
+    pub(in crate::path) fn store(self, [x, y, z]: &mut [Row<f32>; 3]) {
         self.x.store(x);
         self.y.store(y);
         self.z.store(z);
@@ -318,13 +345,13 @@ impl<S: Simd> Vector<S> {
     }
 
     #[inline(always)]
-    pub(super) fn dot(self, other: Self) -> Real<S> {
+    pub(in crate::path) fn dot(self, other: Self) -> Real<S> {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
     /// The components from that of `axis` on, in turn.
     #[inline(always)]
-    pub(super) fn turned(self, axis: usize) -> Self {
+    pub(in crate::path) fn turned(self, axis: usize) -> Self {
         let Self { x, y, z } = self;
         match axis {
             0 => self,
@@ -334,12 +361,12 @@ impl<S: Simd> Vector<S> {
     }
 
     #[inline(always)]
-    pub(super) fn length(self) -> Real<S> {
+    pub(in crate::path) fn length(self) -> Real<S> {
         self.dot(self).sqrt()
     }
 
     #[inline(always)]
-    pub(super) fn max_element(self) -> Real<S> {
+    pub(in crate::path) fn max_element(self) -> Real<S> {
         self.x.max(self.z).max(self.y.max(self.z))
     }
 }
@@ -347,7 +374,7 @@ impl<S: Simd> Vector<S> {
 impl<S: Simd> Mask<S> {
     /// `yes` where it holds, `no` elsewhere.
     #[inline(always)]
-    pub(super) fn choose(self, yes: Vector<S>, no: Vector<S>) -> Vector<S> {
+    pub(in crate::path) fn choose(self, yes: Vector<S>, no: Vector<S>) -> Vector<S> {
         yes.zip(no, |yes, no| self.select(yes, no))
     }
 }

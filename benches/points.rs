@@ -365,7 +365,7 @@ fn turns(rounds: usize) {
     let [mut one, mut two] = ["one thread", "two threads"].map(Times::of);
     for _ in 0..rounds {
         one.time(ROUNDS * BLOCK as u64, || {
-            on_threads(&points, &mut rooms[..1])
+            on_threads(&points, &mut rooms[..1]);
         });
         two.time(ROUNDS * BLOCK as u64, || on_threads(&points, &mut rooms));
     }

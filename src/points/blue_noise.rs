@@ -118,6 +118,7 @@ impl PointSet for BlueNoisePixel {
         let mut block = Block::new(first, dimensions, out, u32::MAX, 0);
         let pairs = block.dimensions.start / 2..block.dimensions.end.div_ceil(2);
         for tile in pairs.clone().step_by(PAIRS) {
+            #[expect(clippy::cast_possible_truncation, reason = "below the number of lanes")]
             let pairs = tile..pairs.end.min(tile + PAIRS as u32);
             vectorised(
                 #[inline(always)]
@@ -276,6 +277,7 @@ impl Curve {
     }
 
     /// What all numbers of `bits` bits, those of a lane at most, become as the next digits.
+    #[expect(clippy::cast_possible_truncation, reason = "of a few bits, cut apart")]
     #[inline(always)]
     fn followed_by_all(self, bits: u32) -> [u16; LANES] {
         let mut images = [0; LANES];

@@ -248,7 +248,7 @@ mod tests {
     }
 
     /// Vectors that the authors of the fast construction have published a program for: of its output, the first 20 components for a
-    /// few numbers of points, all weights being 1/100. As distributed with pySecDec's integrator: cbcpt_dn1_100 of
+    /// few numbers of points, all weights being 1/100. As distributed with pySecDec's integrator: `cbcpt_dn1_100` of
     /// <https://github.com/mppmu/qmc>; Borowka et al. (2019), <https://doi.org/10.1016/j.cpc.2019.02.015>.
     const PUBLISHED: [(usize, [u64; 20]); 3] = [
         (

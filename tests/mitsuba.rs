@@ -357,7 +357,7 @@ fn what_is_wrong_is_told() {
         (sphere(r#"<bsdf type="mask"/>"#), "exactly one BSDF"),
         (r#"<shape type="ply"><string name="filename" value="no.ply"/></shape>"#.to_owned(), "no such file: `no.ply`"),
         (r#"<shape type="serialized"/>"#.to_owned(), "convert other meshes to PLY"),
-        (r#"<integrator type="volpath"/>"#.to_owned(), "there are path, direct and moment"),
+        (r#"<integrator type="aov"/>"#.to_owned(), "there are path, direct and moment"),
         (r#"<emitter type="constant"/><emitter type="constant"/>"#.to_owned(), "at most one constant or envmap"),
         (r#"<emitter type="sunsky"/>"#.to_owned(), "there are point, spot"),
         (r#"<include filename="scene.xml"/>"#.to_owned(), "includes itself"),

@@ -85,10 +85,10 @@ impl<B> Object<B> {
         }
     }
 
-    /// The same with the triangles of its meshes as shapes of their own. What the meshes know of normals and texture
-    /// coordinates is lost: a mesh that emits a picture stays whole.
+    /// The same with the triangles of its meshes as shapes of their own. Meshes that know of normals or texture coordinates stay
+    /// whole, since single triangles do not.
     fn take_apart(&mut self) {
-        if matches!(self.radiance, Radiance::Picture(_)) {
+        if !self.meshes.iter().all(Mesh::is_plain) {
             return;
         }
         for mesh in self.meshes.drain(..) {

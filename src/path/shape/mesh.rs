@@ -118,6 +118,11 @@ impl Mesh {
         self
     }
 
+    /// Whether it knows neither normals nor texture coordinates of its corners.
+    pub(in crate::path) const fn is_plain(&self) -> bool {
+        self.normals.is_empty() && self.uvs.is_empty()
+    }
+
     /// The corners of the triangles, as indices of vertices.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles

@@ -111,7 +111,7 @@ mod tests {
             return;
         };
         let (mut entered, mut met) = (0, 0);
-        for seed in 0..4000 {
+        for seed in 0..6000 {
             // Some lanes stay empty; some rays run along an axis, within the planes of sides.
             let lanes = 1 + hash(seed, 100) % 8;
             let mut node = Node::EMPTY;
@@ -155,6 +155,6 @@ mod tests {
                 met += plain.meet(&block, limit).which.count_ones();
             }
         }
-        assert!(entered > 3000 && met > 500, "{entered} {met}");
+        assert!(entered > 3000 && met > 1000, "{entered} {met}");
     }
 }

@@ -17,18 +17,17 @@ pub(crate) fn in_order<T: Send, E: Send>(
     if count == 1 {
         return take(job(0));
     }
-    inside(|| {
+    let mut outcome = Ok(());
+    inside(&mut || {
         let (mut first, mut length) = (0, FIRST_WAVE);
-        while first < count {
+        while first < count && outcome.is_ok() {
             let last = count.min(first.saturating_add(length));
-            wave(first..last, &job)
-                .into_iter()
-                .try_for_each(&mut take)?;
+            outcome = wave(first..last, &job).into_iter().try_for_each(&mut take);
             first = last;
             length = LARGEST_WAVE.min(2 * length);
         }
-        Ok(())
-    })
+    });
+    outcome
 }
 
 /// The values of `job` at `0..count`, in order: many estimates side by side, as the pixels of an image
@@ -52,23 +51,25 @@ pub fn each<T: Send>(count: u64, job: impl Fn(u64) -> T + Sync) -> Vec<T> {
     wave(0..count, &job)
 }
 
+// Work and jobs are behind pointers, so that what runs them is compiled once, not for every integrand.
+
 /// Runs `work` on a thread of rayon's current pool, so that its waves need not change threads each; a pool of one thread
 /// has nothing to offer over the caller's.
 #[cfg(feature = "parallel")]
-fn inside<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+fn inside(work: &mut (dyn FnMut() + Send)) {
     if rayon::current_num_threads() == 1 {
         return work();
     }
-    rayon::scope(|_| work())
+    rayon::scope(|_| work());
 }
 
 #[cfg(not(feature = "parallel"))]
-fn inside<T>(work: impl FnOnce() -> T) -> T {
-    work()
+fn inside(work: &mut (dyn FnMut() + Send)) {
+    work();
 }
 
 #[cfg(feature = "parallel")]
-fn wave<T: Send>(jobs: core::ops::Range<u64>, job: &(impl Fn(u64) -> T + Sync)) -> Vec<T> {
+fn wave<T: Send>(jobs: core::ops::Range<u64>, job: &(dyn Fn(u64) -> T + Sync)) -> Vec<T> {
     use rayon::iter::{IntoParallelIterator, ParallelIterator};
     if rayon::current_num_threads() == 1 {
         return jobs.map(job).collect();
@@ -78,7 +79,7 @@ fn wave<T: Send>(jobs: core::ops::Range<u64>, job: &(impl Fn(u64) -> T + Sync)) 
 }
 
 #[cfg(not(feature = "parallel"))]
-fn wave<T: Send>(jobs: core::ops::Range<u64>, job: &(impl Fn(u64) -> T + Sync)) -> Vec<T> {
+fn wave<T: Send>(jobs: core::ops::Range<u64>, job: &(dyn Fn(u64) -> T + Sync)) -> Vec<T> {
     jobs.map(job).collect()
 }
 

@@ -1,5 +1,6 @@
 //! All shapes of a scene, and which of them a ray meets.
 
+mod balls;
 mod copies;
 mod flats;
 mod kind;

@@ -89,10 +89,12 @@ impl Packet {
     }
 
     /// What [`Paths::radiance`] gives for each of the points, times the weight that its start has.
+    ///
+    /// The starts are behind a pointer so that the loop is compiled for every kind of sampler, but not of view.
     pub(in crate::path) fn radiance<U: Sampler>(
         &self,
         paths: Paths,
-        start: impl Fn(&mut U) -> Start,
+        start: &dyn Fn(&mut U) -> Start,
         points: &mut [U],
         values: &mut [Vec3],
     ) {

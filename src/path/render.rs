@@ -3,7 +3,7 @@
 use core::fmt;
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec3A};
 
 use super::bsdf::Bsdf;
 use super::filter::{BoxFilter, Filter};
@@ -34,12 +34,12 @@ pub struct Pixel<'a, B, L, E, C, F = BoxFilter> {
     pub size: [u32; 2],
 }
 
-/// Coordinates computed ahead: those of the film and of two surfaces. Few paths end before.
+/// Coordinates computed ahead of paths that the surroundings soon end: those of the film and of two surfaces.
 const AHEAD: u32 = 10;
 
-/// Coordinates computed ahead of paths in packets, where a path that needs more of them than others holds them up.
-#[cfg(feature = "simd")]
-const AHEAD_OF_PACKETS: u32 = 34;
+/// Coordinates computed ahead where nothing is around the scene, or paths go in packets, in which one that needs more of them
+/// than others holds them up.
+const FAR_AHEAD: u32 = 34;
 
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Pixel<'_, B, L, E, C, F> {
     /// The ray of a path, and what its radiance counts.
@@ -83,7 +83,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
     fn evaluate_many<S: Sampler>(&self, samplers: &mut [S], values: &mut [Vec3]) {
         #[cfg(feature = "simd")]
         if let Some(packet) = self.packet() {
-            return packet.radiance(self.paths, |u| self.start(u), samplers, values);
+            return packet.radiance(self.paths, &|u| self.start(u), samplers, values);
         }
         for (u, value) in samplers.iter_mut().zip(values) {
             *value = self.evaluate(u);
@@ -93,9 +93,13 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
     fn dimensions(&self) -> u32 {
         #[cfg(feature = "simd")]
         if self.packet().is_some() {
-            return AHEAD_OF_PACKETS;
+            return FAR_AHEAD;
         }
-        AHEAD
+        if self.scene.environment().constant() == Some(Vec3A::ZERO) {
+            FAR_AHEAD
+        } else {
+            AHEAD
+        }
     }
 }
 
@@ -219,7 +223,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         proceed: impl Fn(u32) -> bool + Sync,
     ) -> Result<Image, Unfinished> {
         let estimate = |position, key| estimator(key).estimate(&self.pixel(position, size));
-        Image::of_pixels_while(size, seed, estimate, proceed)
+        Image::of_pixels_while(size, seed, &estimate, &proceed)
     }
 
     /// The pixel in column and row `position` of a picture of `size`.
@@ -261,14 +265,14 @@ impl Image {
         seed: u64,
         estimate: impl Fn([u32; 2], u64) -> Outcome<Vec3> + Sync,
     ) -> Result<Self, Unfinished> {
-        Self::of_pixels_while(size, seed, estimate, |_| true)
+        Self::of_pixels_while(size, seed, &estimate, &|_| true)
     }
 
     fn of_pixels_while(
         size: [u32; 2],
         seed: u64,
-        estimate: impl Fn([u32; 2], u64) -> Outcome<Vec3> + Sync,
-        proceed: impl Fn(u32) -> bool + Sync,
+        estimate: &(dyn Fn([u32; 2], u64) -> Outcome<Vec3> + Sync),
+        proceed: &(dyn Fn(u32) -> bool + Sync),
     ) -> Result<Self, Unfinished> {
         let [width, height] = size;
         if width == 0 || height == 0 {

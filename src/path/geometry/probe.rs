@@ -3,6 +3,7 @@
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 mod vectors;
 
+use super::balls::Balls;
 use super::flats::{Bits, Flats, LANES, Lanes, bit, word};
 use super::node::Node;
 use crate::path::ray::{Ray, gamma};
@@ -19,6 +20,9 @@ pub(super) trait Probe {
 
     /// The flat shapes that the ray meets before `limit`, as [`Flat::intersect`](crate::path::shape::Shape::intersect) has it.
     fn meet(&self, flats: &Flats, limit: f32) -> Met;
+
+    /// The spheres that the ray meets before `limit`, as [`Sphere::intersect`](crate::path::shape::Shape::intersect) has it.
+    fn strike(&self, balls: &Balls, limit: f32) -> Met;
 }
 
 /// Which of eight things a ray meets, and where.
@@ -157,6 +161,42 @@ impl Probe for Plain {
                 & (t >= -flats.slack[1][lane])
                 & (s + flats.slant[lane] * t <= 1.0 + flats.slack[0][lane])
                 & (t + flats.slant[lane] * s <= 1.0 + flats.slack[1][lane]);
+            met[lane] = bit(lane, inside);
+        }
+        Met {
+            distances,
+            which: word(met),
+        }
+    }
+
+    #[inline(always)]
+    fn strike(&self, balls: &Balls, limit: f32) -> Met {
+        let Self {
+            origin, direction, ..
+        } = *self;
+        let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let mut distances = [0.0; LANES];
+        let mut met: Bits = [0; LANES];
+        for lane in 0..LANES {
+            let squared_radius = balls.squared_radius[lane];
+            let offset: [f32; 3] = [
+                balls.center[0][lane] - origin[0],
+                balls.center[1][lane] - origin[1],
+                balls.center[2][lane] - origin[2],
+            ];
+            let middle = dot(offset, direction);
+            let apart = [
+                offset[0] - direction[0] * middle,
+                offset[1] - direction[1] * middle,
+                offset[2] - direction[2] * middle,
+            ];
+            let discriminant = squared_radius - dot(apart, apart);
+            let far = middle + discriminant.sqrt().copysign(middle);
+            let near = (dot(offset, offset) - squared_radius) / far;
+            let (first, second) = if near < far { (near, far) } else { (far, near) };
+            let distance = if first > 0.0 { first } else { second };
+            distances[lane] = distance;
+            let inside = (discriminant >= 0.0) & (distance > 0.0) & (distance < limit);
             met[lane] = bit(lane, inside);
         }
         Met {

@@ -1,6 +1,7 @@
-//! A sweep over few shapes, eight flat ones at a time.
+//! A sweep over few shapes, eight flat ones or eight spheres at a time.
 
 use super::Found;
+use super::balls::Balls;
 use super::flats::{Flats, LANES};
 use super::kind::{Kind, divides};
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
@@ -17,7 +18,10 @@ pub(in crate::path) struct Sweep {
     dividing: Vec<Flats>,
     /// Which shape each of the flats is: those of simple equations come first.
     pub(in crate::path) flat_shapes: Vec<usize>,
-    /// The shapes that are not flat, and which they are.
+    balls: Vec<Balls>,
+    /// Which shape each of the spheres is.
+    ball_shapes: Vec<usize>,
+    /// The other shapes, and which they are.
     others: Vec<(usize, Primitive)>,
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     simd: Option<pulp::x86::V3>,
@@ -25,10 +29,11 @@ pub(in crate::path) struct Sweep {
 
 impl Sweep {
     pub(super) fn new(shapes: &[Primitive]) -> Self {
-        let (mut flats, mut others) = (Vec::new(), Vec::new());
+        let (mut flats, mut balls, mut others) = (Vec::new(), Vec::new(), Vec::new());
         for (index, shape) in shapes.iter().enumerate() {
             match shape {
                 Primitive::Flat(flat) => flats.push((index, flat)),
+                Primitive::Sphere(sphere) => balls.push((index, sphere)),
                 other => others.push((index, *other)),
             }
         }
@@ -39,6 +44,8 @@ impl Sweep {
             flats: Flats::blocks(in_order.clone()),
             dividing: Flats::blocks(dividing),
             flat_shapes: flats.iter().map(|&(index, _)| index).collect(),
+            balls: Balls::blocks(balls.iter().map(|&(_, sphere)| sphere)),
+            ball_shapes: balls.iter().map(|&(index, _)| index).collect(),
             others,
             #[cfg(all(feature = "simd", target_arch = "x86_64"))]
             simd: pulp::x86::V3::try_new(),
@@ -47,7 +54,7 @@ impl Sweep {
 
     #[inline]
     pub(super) fn nearest(&self, ray: &Ray) -> Option<Found> {
-        let mut nearest = self.nearest_flat(ray);
+        let mut nearest = self.nearest_in_blocks(ray);
         let mut limit = nearest.map_or(f32::INFINITY, |found| found.distance);
         for &(shape, other) in &self.others {
             if let Some(distance) = other.intersect(ray, limit) {
@@ -72,59 +79,70 @@ impl Sweep {
     #[inline]
     fn any(&self, flats: &[Flats], ray: &Ray, limit: f32) -> bool {
         let mut others = self.others.iter();
-        self.any_flat(flats, ray, limit)
+        self.any_in_blocks(flats, ray, limit)
             || others.any(|(_, other)| other.intersect(ray, limit).is_some())
     }
 
-    /// The nearest flat shape; of several at the same distance the first.
+    /// The nearest shape that is flat or a sphere; of several at the same distance the first.
     #[inline]
-    fn nearest_flat(&self, ray: &Ray) -> Option<Found> {
+    fn nearest_in_blocks(&self, ray: &Ray) -> Option<Found> {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if let Some(simd) = self.simd {
             return simd.vectorize(
                 #[inline(always)]
-                || self.nearest_of(&self.flats, &Vectors::new(simd, ray)),
+                || self.nearest_of(&Vectors::new(simd, ray)),
             );
         }
-        self.nearest_of(&self.flats, &Plain::new(ray))
+        self.nearest_of(&Plain::new(ray))
     }
 
     #[inline]
-    fn any_flat(&self, flats: &[Flats], ray: &Ray, limit: f32) -> bool {
+    fn any_in_blocks(&self, flats: &[Flats], ray: &Ray, limit: f32) -> bool {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if let Some(simd) = self.simd {
             return simd.vectorize(
                 #[inline(always)]
-                || any_of(flats, &Vectors::new(simd, ray), limit),
+                || self.any_of(flats, &Vectors::new(simd, ray), limit),
             );
         }
-        any_of(flats, &Plain::new(ray), limit)
+        self.any_of(flats, &Plain::new(ray), limit)
     }
 
     #[inline(always)]
-    fn nearest_of(&self, blocks: &[Flats], probe: &impl Probe) -> Option<Found> {
+    fn nearest_of(&self, probe: &impl Probe) -> Option<Found> {
         let mut limit = f32::INFINITY;
         let mut nearest = None;
-        for (block, flats) in blocks.iter().enumerate() {
+        for (block, flats) in self.flats.iter().enumerate() {
             if let Some((lane, distance)) = probe.meet(flats, limit).nearest() {
                 limit = distance;
-                nearest = Some(block * LANES + lane);
+                nearest = Some(self.flat_shapes[block * LANES + lane]);
             }
         }
-        nearest.map(|place| Found {
-            shape: self.flat_shapes[place],
+        for (block, balls) in self.balls.iter().enumerate() {
+            if let Some((lane, distance)) = probe.strike(balls, limit).nearest() {
+                limit = distance;
+                nearest = Some(self.ball_shapes[block * LANES + lane]);
+            }
+        }
+        nearest.map(|shape| Found {
+            shape,
             distance: limit,
         })
     }
-}
 
-#[inline(always)]
-fn any_of(blocks: &[Flats], probe: &impl Probe, limit: f32) -> bool {
-    // A loop, not `any`: its closure would not be compiled for the machine at hand.
-    for flats in blocks {
-        if probe.meet(flats, limit).which != 0 {
-            return true;
+    // Loops, not `any`: its closure would not be compiled for the machine at hand.
+    #[inline(always)]
+    fn any_of(&self, flats: &[Flats], probe: &impl Probe, limit: f32) -> bool {
+        for flats in flats {
+            if probe.meet(flats, limit).which != 0 {
+                return true;
+            }
         }
+        for balls in &self.balls {
+            if probe.strike(balls, limit).which != 0 {
+                return true;
+            }
+        }
+        false
     }
-    false
 }

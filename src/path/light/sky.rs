@@ -1,8 +1,9 @@
 //! Pictures of what is around a scene.
 
+use core::f32::consts::FRAC_1_PI;
 use core::f64::consts::PI;
 
-use glam::{DMat3, DVec3, Vec3, Vec3A};
+use glam::{DMat3, Mat3A, Vec3, Vec3A};
 
 use super::{Emission, Environment, Illumination};
 use crate::path::{Segment, Surface, color};
@@ -21,10 +22,12 @@ pub struct Sky {
     width: usize,
     pixels: Vec<Vec3>,
     /// From directions of the scene to those of the picture, and back.
-    inward: DMat3,
-    outward: DMat3,
+    inward: Mat3A,
+    outward: Mat3A,
     /// Of the squares between pixels: the first row of them lies between the first two rows of pixels.
     directions: Piecewise2d,
+    /// For each row of squares, the density per latitude and longitude for a unit of mean luminance.
+    density: Vec<f64>,
 }
 
 impl Sky {
@@ -52,103 +55,109 @@ impl Sky {
             return Err(Error::refused("turn of a sky", "a rotation", outward));
         }
         let rows = pixels.len() / width - 1;
-        let mut weights = Vec::with_capacity(rows * width);
-        for row in 0..rows {
-            let solid_angle = (PI * (row as f64 + 0.5) / rows as f64).sin();
-            for column in 0..width {
-                let next = (column + 1) % width;
-                let corners = [
-                    pixels[row * width + column],
-                    pixels[row * width + next],
-                    pixels[(row + 1) * width + column],
-                    pixels[(row + 1) * width + next],
-                ];
-                let sum: f64 = corners.into_iter().map(color::luminance).sum();
-                weights.push(sum * solid_angle);
-            }
-        }
+        let solid_angle = |row: usize| (PI * (row as f64 + 0.5) / rows as f64).sin();
+        let weights: Vec<f64> = (0..rows * width)
+            .map(|square| {
+                let (row, column) = (square / width, square % width);
+                mean_luminance(corners(&pixels, width, row, column)) * solid_angle(row)
+            })
+            .collect();
+        let directions = Piecewise2d::new(&weights, width)?;
+        // Scaled, since the sum of the largest numbers is none.
+        let largest = weights.iter().copied().fold(0.0, f64::max);
+        let sum: f64 = weights.iter().map(|weight| weight / largest).sum();
+        let squares = weights.len() as f64;
+        let density = (0..rows)
+            .map(|row| solid_angle(row) * (squares / sum) / largest / (2.0 * PI * PI))
+            .collect();
         Ok(Self {
             width,
             pixels,
-            inward: outward.inverse(),
-            outward,
-            directions: Piecewise2d::new(&weights, width)?,
+            inward: outward.inverse().as_mat3().into(),
+            outward: outward.as_mat3().into(),
+            directions,
+            density,
         })
     }
 
     /// Where a direction lies in the squares between pixels: `[0, 1)` each way, and the sine of its angle to the zenith.
     #[inline]
-    fn place(&self, direction: Vec3A) -> ([f64; 2], f64) {
-        let d = self.inward * direction.as_dvec3();
-        let sine = d.x.hypot(d.z);
-        let longitude = d.x.atan2(-d.z) / (2.0 * PI) - 0.5 / self.width as f64;
-        let latitude = sine.atan2(d.y) / PI;
-        let within = |u: f64| u.clamp(0.0, 1.0 - f64::EPSILON / 2.0);
+    fn place(&self, direction: Vec3A) -> ([f32; 2], f32) {
+        let d = self.inward * direction;
+        let sine = (d.x * d.x + d.z * d.z).sqrt();
+        let longitude = d.x.atan2(-d.z) * (0.5 * FRAC_1_PI) - 0.5 / self.width as f32;
+        let latitude = sine.atan2(d.y) * FRAC_1_PI;
+        let within = |u: f32| u.clamp(0.0, 1.0 - f32::EPSILON / 2.0);
         (
             [within(longitude - longitude.floor()), within(latitude)],
             sine,
         )
     }
 
-    /// The radiance at a place in the squares between pixels.
+    /// The light from a place in the squares between pixels, whose angle to the zenith has the given sine. The density is that
+    /// of `directions`, by the pixels that are at hand anyway.
     #[inline]
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "rounds down to a pixel, and to f32"
     )]
-    fn radiance(&self, [x, y]: [f64; 2]) -> Vec3 {
-        let rows = self.pixels.len() / self.width - 1;
+    fn emission(&self, [x, y]: [f64; 2], sine: f32) -> Emission {
+        let rows = self.density.len();
         let (x, y) = (x * self.width as f64, y * rows as f64);
         let (column, row) = ((x as usize).min(self.width - 1), (y as usize).min(rows - 1));
-        let next = if column + 1 == self.width {
-            0
-        } else {
-            column + 1
-        };
         let (s, t) = ((x - column as f64) as f32, (y - row as f64) as f32);
-        let [above, below] = [row, row + 1].map(|row| {
-            let row = &self.pixels[row * self.width..][..self.width];
-            row[column].lerp(row[next], s)
-        });
-        above.lerp(below, t)
-    }
-
-    /// A density in the squares between pixels as one per solid angle.
-    #[inline]
-    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-    fn per_solid_angle(density: f64, sine: f64) -> f32 {
-        if sine > 0.0 {
-            (density / (2.0 * PI * PI * sine)) as f32
+        let corners = corners(&self.pixels, self.width, row, column);
+        let above = corners[0].lerp(corners[1], s);
+        let below = corners[2].lerp(corners[3], s);
+        let density = if sine > 0.0 {
+            (mean_luminance(corners) * self.density[row] / f64::from(sine)) as f32
         } else {
             0.0
+        };
+        Emission {
+            radiance: above.lerp(below, t).into(),
+            density,
         }
     }
+}
+
+/// The pixels around a square: two above, two below.
+#[inline]
+fn corners(pixels: &[Vec3], width: usize, row: usize, column: usize) -> [Vec3; 4] {
+    let next = if column + 1 == width { 0 } else { column + 1 };
+    let [above, below] = [row, row + 1].map(|row| &pixels[row * width..][..width]);
+    [above[column], above[next], below[column], below[next]]
+}
+
+/// The luminance of the mean of some pixels.
+#[inline]
+fn mean_luminance(corners: [Vec3; 4]) -> f64 {
+    let [a, b, c, d] = corners.map(|pixel| 0.25 * pixel);
+    color::luminance((a + b) + (c + d))
 }
 
 impl Environment for Sky {
     #[inline]
     fn emitted(&self, direction: Vec3A) -> Emission {
         let (place, sine) = self.place(direction);
-        Emission {
-            radiance: self.radiance(place).into(),
-            density: Self::per_solid_angle(self.directions.density(place), sine),
-        }
+        self.emission(place.map(f64::from), sine)
     }
 
     #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
-        let place = self.directions.sample(u.next_2d());
-        let turns = place[0] + 0.5 / self.width as f64;
-        let (sine, cosine) = (PI * place[1]).sin_cos();
-        let (x, z) = (2.0 * PI * turns).sin_cos();
-        let direction = self.outward * DVec3::new(x * sine, cosine, -z * sine);
-        let direction = direction.normalize().as_vec3a();
-        let density = Self::per_solid_angle(self.directions.density(place), sine);
-        let weight = Vec3A::from(self.radiance(place)) / density;
+        let [x, y] = self.directions.sample(u.next_2d());
+        // Angles from the nearer pole keep their digits.
+        let (sine, height) = ((PI * y.min(1.0 - y)) as f32).sin_cos();
+        let cosine = if y < 0.5 { height } else { -height };
+        let turns = x + 0.5 / self.width as f64;
+        let (along, against) = ((2.0 * PI * turns) as f32).sin_cos();
+        let direction = Vec3A::new(along * sine, cosine, -against * sine);
+        let Emission { radiance, density } = self.emission([x, y], sine);
         (density > 0.0 && density < f32::INFINITY).then(|| Illumination {
-            way: Segment::along(from, direction),
-            weight,
+            way: Segment::along(from, (self.outward * direction).normalize()),
+            weight: radiance / density,
             density,
         })
     }
@@ -157,6 +166,8 @@ impl Environment for Sky {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
+
     use crate::path::Surface;
     use crate::points::{HashedOwen, PointSet, Sobol};
 
@@ -224,10 +235,28 @@ mod tests {
                 let area = (PI * y).sin() * (PI / f64::from(steps)).powi(2);
                 #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
                 let area = area as f32;
-                expected += Vec3A::from(sky.radiance([x, y])) * area;
+                expected += sky.emission([x, y], 1.0).radiance * area;
             }
         }
         assert!((integral / expected - 1.0).abs().max_element() < 2e-3);
+    }
+
+    #[test]
+    fn the_density_of_pixels_is_that_of_the_samples() {
+        for scale in [1e-30, 1.0, 1e37] {
+            let pixels: Vec<[f32; 3]> = (0_u8..24)
+                .map(|i| [0.0, 0.5, 2.5].map(|x| x * scale * f32::from(i * 7 % 13)))
+                .collect();
+            let sky = Sky::new(6, &pixels, DMat3::IDENTITY).unwrap();
+            for place in [[0.01, 0.02], [0.4, 0.3], [0.99, 0.5], [0.7, 0.98]] {
+                let sine = (PI * place[1]).sin();
+                let expected = sky.directions.density(place) / (2.0 * PI * PI * sine);
+                #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+                let emission = sky.emission(place, sine as f32);
+                let ratio = f64::from(emission.density) / expected;
+                assert!((ratio - 1.0).abs() < 1e-5, "{place:?}: {ratio}");
+            }
+        }
     }
 
     #[test]

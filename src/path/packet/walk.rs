@@ -13,10 +13,10 @@ use crate::path::radiance::play;
 use crate::path::{Paths, gamma};
 
 /// The paths of some points.
-pub(super) struct Walk<'a, U, C> {
+pub(super) struct Walk<'a, U> {
     pub(super) packet: &'a Packet,
     pub(super) paths: Paths,
-    pub(super) start: C,
+    pub(super) start: &'a dyn Fn(&mut U) -> Start,
     pub(super) points: &'a mut [U],
     pub(super) values: &'a mut [Vec3],
 }
@@ -69,7 +69,7 @@ impl State {
     }
 }
 
-impl<U: Sampler, C: Fn(&mut U) -> Start> WithSimd for Walk<'_, U, C> {
+impl<U: Sampler> WithSimd for Walk<'_, U> {
     type Output = ();
 
     /// Follows a path in each lane; where one ends the next one begins.
@@ -103,7 +103,7 @@ impl<U: Sampler, C: Fn(&mut U) -> Start> WithSimd for Walk<'_, U, C> {
     }
 }
 
-impl<U: Sampler, C: Fn(&mut U) -> Start> Walk<'_, U, C> {
+impl<U: Sampler> Walk<'_, U> {
     /// Takes every path one segment on, as an iteration of [`Paths::radiance`] does.
     #[inline(always)]
     fn step<S: Simd>(&mut self, simd: S, state: &mut State) {

@@ -103,6 +103,11 @@ impl Sphere {
         self.radius
     }
 
+    #[inline]
+    pub(in crate::path) fn squared_radius(&self) -> f32 {
+        self.squared_radius
+    }
+
     /// Whether a point at this squared distance from the centre is inside, or on the sphere up to rounding: there
     /// is no cone that the sphere fills.
     #[inline]

@@ -6,6 +6,7 @@ use glam::Vec3A;
 use pulp::x86::V3;
 
 use super::{Met, Probe, WIDER, far_sides, near_sides};
+use crate::path::geometry::balls::Balls;
 use crate::path::geometry::flats::{Flats, Lanes};
 use crate::path::geometry::node::Node;
 use crate::path::lanes::{Mask, Real, Vector};
@@ -87,6 +88,23 @@ impl Probe for Vectors {
             & (t + slant * s).le(1.0 + slack_t);
         self.met(distance, inside)
     }
+
+    #[inline(always)]
+    fn strike(&self, balls: &Balls, limit: f32) -> Met {
+        let squared_radius = Real::of(self.simd, &balls.squared_radius);
+        let offset = self.vector(balls.center.each_ref()) - self.origin;
+        let middle = offset.dot(self.direction);
+        let apart = offset - self.direction * middle;
+        let discriminant = squared_radius - apart.dot(apart);
+        let zero = middle.all(0.0);
+        let far = middle + discriminant.sqrt().copysign(middle);
+        let near = (offset.dot(offset) - squared_radius) / far;
+        let ordered = near.lt(far);
+        let (first, second) = (ordered.select(near, far), ordered.select(far, near));
+        let distance = first.gt(zero).select(first, second);
+        let inside = discriminant.ge(zero) & distance.gt(zero) & distance.lt(distance.all(limit));
+        self.met(distance, inside)
+    }
 }
 
 #[cfg(test)]
@@ -95,7 +113,7 @@ mod tests {
     use crate::hash::{hash, unit_f32};
     use crate::path::geometry::node::Child;
     use crate::path::geometry::probe::Plain;
-    use crate::path::shape::Flat;
+    use crate::path::shape::{Flat, Shape, Sphere};
 
     fn random(seed: u64, k: u64) -> f32 {
         unit_f32(hash(seed, k)) - 0.5
@@ -110,7 +128,7 @@ mod tests {
         let Some(simd) = V3::try_new() else {
             return;
         };
-        let (mut entered, mut met) = (0, 0);
+        let (mut entered, mut met, mut met_spheres) = (0, 0, 0);
         for seed in 0..6000 {
             // Some lanes stay empty; some rays run along an axis, within the planes of sides.
             let lanes = 1 + hash(seed, 100) % 8;
@@ -128,6 +146,11 @@ mod tests {
                 });
             }
             let block = Flats::blocks(flats.iter())[0];
+            let spheres: Vec<_> = (0..lanes)
+                .map(|lane| Sphere::new(vector(seed, 60 + lane), 0.5 + random(seed, 300 + lane)))
+                .collect::<Result<_, _>>()
+                .unwrap();
+            let balls = Balls::blocks(spheres.iter())[0];
             let origin = Vec3A::from(vector(seed, 50));
             let ray = match seed % 4 {
                 0 => Ray {
@@ -144,6 +167,7 @@ mod tests {
                 for (expected, found) in [
                     (plain.enter(&node, limit), vectors.enter(&node, limit)),
                     (plain.meet(&block, limit), vectors.meet(&block, limit)),
+                    (plain.strike(&balls, limit), vectors.strike(&balls, limit)),
                 ] {
                     assert_eq!(found.which, expected.which, "{ray:?} {limit}");
                     for lane in expected.lanes() {
@@ -153,8 +177,17 @@ mod tests {
                 }
                 entered += plain.enter(&node, limit).which.count_ones();
                 met += plain.meet(&block, limit).which.count_ones();
+                let struck = vectors.strike(&balls, limit);
+                for (lane, sphere) in spheres.iter().enumerate() {
+                    let hit = (struck.which >> lane & 1 == 1).then_some(struck.distances[lane]);
+                    assert_eq!(hit, sphere.intersect(&ray, limit), "{ray:?} {limit} {lane}");
+                }
+                met_spheres += struck.which.count_ones();
             }
         }
-        assert!(entered > 3000 && met > 1000, "{entered} {met}");
+        assert!(
+            entered > 3000 && met > 1000 && met_spheres > 3000,
+            "{entered} {met} {met_spheres}"
+        );
     }
 }

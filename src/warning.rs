@@ -20,6 +20,12 @@ pub enum Warning {
         /// The largest share of one value in the sum of squared deviations.
         share: f64,
     },
+    /// Most strata show no variance, and what there is comes from a few of them, as it does in the search for a narrow peak or a
+    /// rare event. Where a stratum that matters showed nothing, the error may be many times the error bar.
+    FewStrata {
+        /// How many strata it comes from, as many as would each have an equal share of it.
+        deciding: f64,
+    },
     /// The largest values fall off so slowly that the variance may be infinite. Intervals hold the integral
     /// less often than they claim.
     HeavyTail {
@@ -86,6 +92,10 @@ impl fmt::Display for Warning {
                 f,
                 "one value makes up {:.0} % of the variance: the error may be far above the error bar",
                 100.0 * share
+            ),
+            Self::FewStrata { deciding } => write!(
+                f,
+                "the variance comes from about {deciding:.0} strata, and most have none: others may have been missed"
             ),
             Self::HeavyTail { exponent } => write!(
                 f,

@@ -108,3 +108,25 @@ fn large_radical_inverses_are_exact_fractions() {
     assert_eq!(radical_inverse(3, power - 1), 1.0 - f64::EPSILON / 2.0);
     assert_eq!(radical_inverse(10, 10_u64.pow(19)), 1e-20);
 }
+
+/// Veach, Eric; Guibas, Leonidas (1995). *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, equations for the
+/// balance and the power heuristic with exponent 2. <https://doi.org/10.1145/218380.218498>
+#[test]
+fn heuristics_have_the_weights_of_their_definition() {
+    use estimand::integrands::Heuristic::{Balance, Power};
+    for (density, others, balance, power) in [
+        (1.0, &[2.0][..], 1.0 / 3.0, 1.0 / 5.0),
+        (3.0, &[4.0, 12.0], 3.0 / 19.0, 9.0 / 169.0),
+        (5.0, &[], 1.0, 1.0),
+        (0.0, &[1.0], 0.0, 0.0),
+        (2.0, &[f64::INFINITY], 0.0, 0.0),
+    ] {
+        for (heuristic, expected) in [(Balance, balance), (Power, power)] {
+            let weight = heuristic.weight(density, others);
+            assert!(
+                (weight - expected).abs() < 1e-15,
+                "{density} {others:?}: {weight}"
+            );
+        }
+    }
+}

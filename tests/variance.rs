@@ -62,6 +62,29 @@ fn neyman_allocation_has_the_variance_of_theory() {
 }
 
 #[test]
+fn variance_of_few_among_many_strata_is_doubted() {
+    // 64 strata, the values vary in `k` of them and are zero in the others; smooth in all of them for 64.
+    for (k, doubted) in [(1.0, true), (3.0, true), (30.0, false), (64.0, false)] {
+        let f = cube(move |[x]: [f64; 1]| if x * 64.0 < k { (200.0 * x).sin() } else { 0.0 });
+        for neyman in [false, true] {
+            let mut strata = Strata::new(64, 1, 6400, 5).unwrap();
+            if neyman {
+                strata = strata.neyman();
+            }
+            let estimate = strata.estimate(&f).unwrap();
+            let deciding = estimate.warnings.iter().find_map(|warning| match warning {
+                Warning::FewStrata { deciding } => Some(*deciding),
+                _ => None,
+            });
+            assert_eq!(deciding.is_some(), doubted, "{k} {neyman}: {deciding:?}");
+            if let Some(deciding) = deciding {
+                assert!((0.3 * k..=k + 1e-9).contains(&deciding), "{k}: {deciding}");
+            }
+        }
+    }
+}
+
+#[test]
 fn antithetic_pairs_keep_the_even_part_only() {
     // x + (x - 1/2)^2: the odd part goes, the even one has the variance 1/180.
     let f = cube(|[x]: [f64; 1]| x + (x - 0.5).powi(2));

@@ -409,3 +409,15 @@ fn what_is_no_domain_is_refused() {
     assert!(Piecewise2d::new(&[1.0; 6], 4).is_err());
     assert!(Piecewise2d::new(&[1.0; 6], 0).is_err());
 }
+
+#[test]
+fn the_density_of_a_picture_is_in_proportion_to_its_weights() {
+    // Rows of different shapes: sums and maxima of rows are not in proportion.
+    let weights = [1.0, 1.0, 1.0, 5.0, 0.0, 0.0, 0.0, 2.0, 6.0];
+    let picture = Piecewise2d::new(&weights, 3).unwrap();
+    for (cell, weight) in weights.into_iter().enumerate() {
+        let middle = [cell % 3, cell / 3].map(|k| (k as f64 + 0.5) / 3.0);
+        let expected = weight / 16.0 * 9.0;
+        assert!((picture.density(middle) - expected).abs() < 1e-14, "{cell}");
+    }
+}

@@ -21,7 +21,7 @@ use crate::{
 ///
 /// The error is looked at after [`least`](Self::least) evaluations and then each time that their number has about doubled,
 /// so that few looks give few chances to stop by luck; the level is that of each look. An error bar of zero,
-/// or one that hangs on a few values ([`Warning::FewValues`]), meets no tolerance: a rare event that was not
+/// or one that hangs on a few values ([`Warning::FewValues`]) or strata ([`Warning::FewStrata`]), meets no tolerance: a rare event that was not
 /// seen yet looks like that.
 ///
 /// # Time and callback
@@ -244,10 +244,12 @@ impl<E: Progressive> Until<E> {
         let Some(estimate) = self.estimator.conclude(state) else {
             return false;
         };
-        let doubtful = estimate
-            .warnings
-            .iter()
-            .any(|warning| matches!(warning, Warning::FewValues { .. } | Warning::NoSpread));
+        let doubtful = estimate.warnings.iter().any(|warning| {
+            matches!(
+                warning,
+                Warning::FewValues { .. } | Warning::FewStrata { .. } | Warning::NoSpread
+            )
+        });
         let Some(half) = estimate.half_width(self.level) else {
             return false;
         };

@@ -77,6 +77,8 @@ pub struct Iteration<V> {
     pub freedom: f64,
     /// The largest share of one value in the variance.
     pub share: f64,
+    /// The share of one stratum in the variance if it came from strata of equal shares; 0 unless most strata have none.
+    pub stratum_share: f64,
     /// How many evaluations it made.
     pub used: u64,
     /// How many of the values were not finite and left out.
@@ -286,6 +288,7 @@ impl Vegas {
                 1e9
             },
             share: largest_share,
+            stratum_share: main.iter().map(|one| one.stratum_share).fold(0.0, f64::max),
             size: state.adaptation.scale,
             visited: 1,
             strata: 1,
@@ -454,6 +457,7 @@ impl Progressive for Vegas {
                 std_error: alone.std_error,
                 freedom: alone.freedom,
                 share: alone.share,
+                stratum_share: alone.stratum_share,
                 used: points,
                 rejected: pass.visited.rejected(),
                 training: iterations.len() < self.training(),

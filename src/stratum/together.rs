@@ -16,6 +16,8 @@ pub(crate) struct Stratified<V> {
     pub(crate) freedom: f64,
     /// The largest share of one value in the variance of the mean.
     pub(crate) share: f64,
+    /// The share of one stratum in the variance if it came from strata of equal shares; 0 unless most strata have none.
+    pub(crate) stratum_share: f64,
     /// The largest absolute value.
     pub(crate) size: V,
     /// How many of the strata have points.
@@ -92,6 +94,7 @@ impl<V: Value> Stratified<V> {
             std_error: means.std_error().unwrap_or(V::ZERO),
             freedom: means.count() as f64 - 1.0,
             share: largest,
+            stratum_share: 0.0,
             size: size(strata),
             visited: means.count(),
             strata: strata.len() as u64,
@@ -115,6 +118,7 @@ impl<V: Value> Stratified<V> {
             .iter()
             .fold(V::ZERO, |largest, error| largest.zip(*error, f64::max));
         let (mut squares, mut fourths, mut peak) = (V::ZERO, V::ZERO, V::ZERO);
+        let (mut concentration, mut alike) = (V::ZERO, V::ZERO);
         for (stratum, &error) in strata.iter().zip(&errors) {
             let moments = stratum.moments;
             let less = moments.count() as f64 - 1.0;
@@ -125,6 +129,8 @@ impl<V: Value> Stratified<V> {
             });
             squares = squares.zip(part, |sum, part| sum + part);
             fourths = fourths.zip(part, |sum, part| sum + part * part / less);
+            concentration = concentration.zip(part, |sum, part| sum + part * part);
+            alike = alike.zip(part, |sum, part| sum + f64::from(u8::from(part == 0.0)));
             let share = stratum
                 .high
                 .zip(moments.mean(), |high, mean| high - mean)
@@ -153,11 +159,21 @@ impl<V: Value> Stratified<V> {
             }
             0.0
         });
+        let mut stratum_share = 0.0_f64;
+        let shares = concentration.zip(squares, |fourths, squares| fourths / (squares * squares));
+        let _ = shares.zip(alike, |share, alike| {
+            if alike * weight > 0.5 {
+                // NaN, where no stratum has a variance, is no larger.
+                stratum_share = stratum_share.max(share);
+            }
+            0.0
+        });
         Some(Self {
             mean,
             std_error,
             freedom,
             share,
+            stratum_share,
             size: size(strata),
             visited: strata.len() as u64,
             strata: strata.len() as u64,
@@ -188,6 +204,10 @@ impl<V: Value> Stratified<V> {
         let share = self.share.max(1.0 / self.freedom).min(1.0);
         if share > 0.05 {
             warnings.push(Warning::FewValues { share });
+        }
+        if self.stratum_share > 0.05 {
+            let deciding = 1.0 / self.stratum_share;
+            warnings.push(Warning::FewStrata { deciding });
         }
         warnings.extend(Warning::of_rounding(self.std_error, self.size));
         warnings

@@ -38,6 +38,9 @@ struct Arguments {
     /// Also write the table as JSON to a file, or nothing but that to standard output for `-`
     #[arg(long, value_name = "FILE")]
     json: Option<String>,
+    /// Only integrands whose name contains this.
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    only: String,
 }
 
 fn main() -> ExitCode {
@@ -57,7 +60,11 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
             println!("{text}");
         }
     };
-    let cases = stiff::cases();
+    let mut cases = stiff::cases();
+    cases.retain(|case| case.name.contains(&arguments.only));
+    if cases.is_empty() {
+        return Err(format!("no integrand's name contains {}", arguments.only).into());
+    }
     let bar = ProgressBar::with_draw_target(Some(cases.len() as u64), ProgressDrawTarget::stderr());
     bar.set_style(ProgressStyle::with_template(
         "{wide_bar} {pos}/{len} {msg}",

@@ -90,15 +90,19 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Median<F> {
     }
 }
 
-/// Warns where half of the replicates or more equal another one, in some component.
+/// Warns where a third of the replicates or more equal another one, in some component.
 ///
 /// Replicates that differ by rounding alone are not meant: they agree as well as they can.
 fn tied<V: Value>(means: &[V]) -> Option<Warning> {
     let sorted: Vec<V> = (0..means.len())
         .map(|rank| order_statistic(means, rank))
         .collect();
-    let (quarter, half) = (means.len() / 4, means.len() / 2);
-    let spread = sorted[means.len() - 1 - quarter].zip(sorted[quarter], |high, low| high - low);
+    let (last, quarter, half) = (means.len() - 1, means.len() / 4, means.len() / 2);
+    let between = |low: usize, high: usize| sorted[high].zip(sorted[low], |high, low| high - low);
+    // Where the middle half is one value, the others must differ by far more than rounding.
+    let spread = between(quarter, last - quarter).zip(between(0, last), |middle, all| {
+        if middle == 0.0 { 1e-3 * all } else { middle }
+    });
     let rounding = sorted[half].map(|middle| 8.0 * f64::EPSILON * middle.abs());
     let steps = sorted.windows(2).fold(V::ZERO, |steps, pair| {
         let step = pair[1].zip(pair[0], |b, a| if b > a { 1.0 } else { 0.0 });
@@ -114,7 +118,7 @@ fn tied<V: Value>(means: &[V]) -> Option<Warning> {
             steps
         },
     );
-    if 2.0 * fewest > means.len() as f64 {
+    if 3.0 * fewest > 2.0 * means.len() as f64 {
         return None;
     }
     #[expect(

@@ -3,6 +3,8 @@
 //!
 //! Seeds are fixed; a limit of six standard deviations fails in 2e-9 of all choices of the seed.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use estimand::estimators::Strata;
 use estimand::integrands::{Antithetic, ControlVariate, Joint, Pilot, Splitting, Staged, ratio};
 use estimand::points::Independent;
@@ -59,6 +61,26 @@ fn neyman_allocation_has_the_variance_of_theory() {
     // The best there is, with all points in proportion to the deviations, is (w1 s1 + w2 s2)^2 / n.
     let best = 0.25 / 12.0 * 81.0 / 2000.0;
     assert!(neyman < 1.25 * best, "{neyman}, at best {best}");
+}
+
+#[test]
+fn neyman_shares_points_by_deviations() {
+    // A tenth is the pilot, half of it in each stratum; of the rest nine tenths go by the deviations, 1 to 8, and one evenly.
+    let noisy_points = AtomicU64::new(0);
+    let f = cube(|[x, y]: [f64; 2]| {
+        let noisy = x >= 0.5;
+        noisy_points.fetch_add(u64::from(noisy), Ordering::Relaxed);
+        if noisy { 8.0 * y } else { y }
+    });
+    let strata = Strata::new(2, 1, 100_000, 3).unwrap().neyman();
+    let estimate = strata.estimate(&f).unwrap();
+    let share = noisy_points.into_inner() as f64 / estimate.used as f64;
+    let expected = 0.1 * 0.5 + 0.9 * (0.9 * 8.0 / 9.0 + 0.1 * 0.5);
+    // The pilot knows the deviations to about 1 %, and the share to a tenth of that.
+    assert!(
+        (share - expected).abs() < 0.006,
+        "{share}, by theory {expected}"
+    );
 }
 
 #[test]

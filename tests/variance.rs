@@ -37,6 +37,27 @@ fn noisy() -> impl Integrand<Value = f64> {
     cube(|[x, y]| if x < 0.5 { y } else { 8.0 * y })
 }
 
+/// Every axis is confined: a sum of coordinates has the variance 1 / (12 * 4^2) an axis within the cells of a grid of four.
+#[test]
+fn strata_lessen_the_variance_along_every_axis() {
+    const COUNT: u64 = 1 << 18;
+    for axes in 1..=5_u32 {
+        let f = cube(move |x: [f64; 5]| x[..axes as usize].iter().sum::<f64>());
+        let strata = Strata::new(4, axes, COUNT, 11).unwrap();
+        let estimate = strata.estimate(&f).unwrap();
+        let error = estimate.std_error.unwrap();
+        let expected = (f64::from(axes) / (12.0 * 16.0) / COUNT as f64).sqrt();
+        // Six standard deviations of the error, which is that of the variance, sqrt(2 / count) at most, halved.
+        let limit = 3.0 * (2.0 / COUNT as f64).sqrt();
+        assert!(
+            (error / expected - 1.0).abs() < limit,
+            "{axes} axes: {error}, in theory {expected}"
+        );
+        let off = estimate.mean - 0.5 * f64::from(axes);
+        assert!(off.abs() < 6.0 * expected, "{axes} axes: off by {off}");
+    }
+}
+
 #[test]
 fn proportional_strata_have_the_variance_of_theory() {
     // The sum of w^2 s^2 / n over the strata, with w = 1/2 and n half of the points.

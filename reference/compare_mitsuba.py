@@ -2,7 +2,7 @@
 
     pip install -r requirements.txt
     cargo build --release --all-features --example render
-    DRJIT_LIBLLVM_PATH=... python3 compare_mitsuba.py [--points SET] [--spp N]... [--runs R] SCENE.xml...
+    DRJIT_LIBLLVM_PATH=... python3 compare_mitsuba.py [-D name=value]... [--points SET] [--spp N]... [--runs R] SCENE.xml...
 
 Mitsuba runs its fastest variant for processors, `llvm_ad_rgb`, with each of `SAMPLERS`; the scene's own sampler is
 replaced. The first render compiles: its time, loading included, is `cold`, and counts for nothing else. Then for every number of
@@ -39,7 +39,7 @@ SAMPLERS = ["independent", "multijitter"]
 class Mitsuba:
     """A scene with one of Mitsuba's samplers."""
 
-    def __init__(self, file: Path, sampler: str):
+    def __init__(self, file: Path, sampler: str, values: dict[str, str]):
         self.name = f"mitsuba {sampler}"
         text, count = re.subn(r'<sampler\s+type="\w+"', f'<sampler type="{sampler}"', file.read_text())
         if count == 0:
@@ -49,7 +49,7 @@ class Mitsuba:
         with tempfile.NamedTemporaryFile("w", suffix=".xml", dir=file.parent) as copy:
             copy.write(text)
             copy.flush()
-            self.scene = mi.load_file(copy.name)
+            self.scene = mi.load_file(copy.name, **values)
         self.load = time.perf_counter() - start
         self.render(16, 0)
         self.cold = time.perf_counter() - start
@@ -63,9 +63,11 @@ class Mitsuba:
 class Ours:
     """The same scene in the program `render`."""
 
-    def __init__(self, file: Path, program: Path, points: str):
+    def __init__(self, file: Path, program: Path, points: str, values: dict[str, str]):
         self.name = f"ours {points}"
         self.command = [program, file, "--points", points, "--replicates", "1", "--json", "-"]
+        for name, value in values.items():
+            self.command += ["-D", f"{name}={value}"]
         self.load = self.cold = 0.0
 
     def render(self, spp: int, seed: int) -> tuple[float, np.ndarray]:
@@ -101,7 +103,9 @@ def apart(ours: list[np.ndarray], theirs: list[np.ndarray]) -> float:
 
 
 def compare(file: Path, options: argparse.Namespace) -> None:
-    programs = [Ours(file, options.program, options.points), *(Mitsuba(file, s) for s in SAMPLERS)]
+    values = dict(options.values)
+    ours = Ours(file, options.program, options.points, values)
+    programs = [ours, *(Mitsuba(file, sampler, values) for sampler in SAMPLERS)]
     print(f"\n{file.name}")
     print(f"{'':22} {'spp':>5} {'M paths/s':>22} {'seconds':>22} {'rmse':>9} {'mse x spp':>10} {'efficiency':>11} {'apart':>6}")
     for spp in options.spp:
@@ -128,9 +132,18 @@ def compare(file: Path, options: argparse.Namespace) -> None:
         print(f"{program.name:22} loaded in {program.load:.2f} s, cold {program.cold:.2f} s")
 
 
+def assignment(text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not (name and equals):
+        raise argparse.ArgumentTypeError(f"{text} is no name=value")
+    return name, value
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="+", type=Path, metavar="SCENE.xml")
+    parser.add_argument("-D", dest="values", type=assignment, action="append", default=[], metavar="NAME=VALUE",
+                        help="gives a parameter of the scenes a value")
     parser.add_argument("--points", default="sobol")
     parser.add_argument("--spp", type=int, action="append")
     parser.add_argument("--runs", type=int, default=5)

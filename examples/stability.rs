@@ -38,8 +38,13 @@ struct Arguments {
     /// Also write the table as JSON to a file, or nothing but that to standard output for `-`
     #[arg(long, value_name = "FILE")]
     json: Option<String>,
-    /// Only integrands whose name contains this.
-    #[arg(long, value_name = "TEXT", default_value = "")]
+    /// Only integrands whose name contains this
+    #[arg(
+        long,
+        value_name = "TEXT",
+        default_value = "",
+        hide_default_value = true
+    )]
     only: String,
 }
 

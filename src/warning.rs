@@ -225,8 +225,8 @@ fn usual_share(count: f64) -> f64 {
 const FEWEST: usize = 8;
 
 /// The reciprocal exponent from which on a tail is called heavy: a variance asks for less than 1/2, and the
-/// estimate from 16 extremes has a standard error of a quarter of its value, so that this is one below. The tail of a normal
-/// distribution has about 0.1 at a million values, that of an exponential one twice as much.
+/// estimate from 16 extremes has a standard error of a quarter of its value, so that this is one below. At a million values the tail of a
+/// normal distribution has about 0.05, that of an exponential one 0.08.
 const HEAVY: f64 = 0.375;
 
 /// Hill's estimate of the reciprocal of the tail's exponent, from the largest deviations; the largest of

@@ -27,12 +27,24 @@ fn strata_have_the_freedom_of_the_one_that_varies() {
 
 #[test]
 fn strata_of_equal_variance_add_their_freedoms() {
-    // The values of both halves differ by a constant, so that their variances do by chance alone: with many points the freedom is
-    // nearly the sum, whose quantile is that of the normal distribution.
-    let f = cube(|[x, y]: [f64; 2]| if x < 0.5 { y } else { 1.0 + y });
-    let estimate = Strata::new(2, 1, 20_000, 7).unwrap().estimate(&f).unwrap();
-    let widths = errors_wide(&estimate);
-    assert!((widths - 1.960_1).abs() < 2e-4, "{widths}");
+    // Two values of 0 or 1 in each half: a half whose values differ has the variance 1/2 and one degree of freedom, the mean of the
+    // two then a standard error of 1/4, or of sqrt(1/8) if both halves have it.
+    let f = cube(|[_, y]: [f64; 2]| f64::from(u8::from(y < 0.5)));
+    let mut seen = [0; 2];
+    for seed in 0..40 {
+        let estimate = Strata::new(2, 1, 4, seed).unwrap().estimate(&f).unwrap();
+        let error = estimate.std_error.unwrap();
+        if error == 0.0 {
+            continue;
+        }
+        let both = usize::from(error > 0.3);
+        let (freedom, quantile) = STUDENT[both];
+        let widths = errors_wide(&estimate);
+        assert!((widths - quantile).abs() < 6e-4, "{freedom}: {widths}");
+        assert!((error - [0.25, 0.125_f64.sqrt()][both]).abs() < 1e-15);
+        seen[both] += 1;
+    }
+    assert!(seen[0] > 0 && seen[1] > 0, "{seen:?}");
 }
 
 /// Maurer, Andreas; Pontil, Massimiliano (2009). *Empirical Bernstein Bounds and Sample Variance Penalization*, theorem 4, on

@@ -87,30 +87,36 @@ impl Method {
         seed: u64,
     ) -> Result<f64, Error> {
         let dims = integrand.dimensions();
-        let sobol = Sobol::new(dims)?;
-        let scrambled = |seed| sobol.clone().scrambled(HashedOwen { seed });
         let estimate = match self {
             Self::Plain => MonteCarlo::new(count, seed).estimate(integrand)?,
             Self::Vegas => Vegas::new(dims, count, seed)?.estimate(integrand)?,
-            Self::Sobol => Replicated::new(REPLICATES, count / REPLICATES, scrambled)
+            Self::Sobol => Replicated::new(REPLICATES, count / REPLICATES, scrambled(dims)?)
                 .seed(seed)
                 .estimate(integrand)?,
-            Self::Lattice => {
-                let lattice = LatticeSequence::new(dims)?;
-                let folded = |seed| Folded::new(Shifted::new(lattice.clone(), seed));
-                Replicated::new(REPLICATES, count / REPLICATES, folded)
-                    .seed(seed)
-                    .estimate(integrand)?
-            }
+            Self::Lattice => Replicated::new(REPLICATES, count / REPLICATES, folded(dims)?)
+                .seed(seed)
+                .estimate(integrand)?,
             Self::Mapped => {
                 let map = Vegas::new(dims, count / 4, seed)?.train(integrand)?;
-                Replicated::new(REPLICATES, count / 2 / REPLICATES, scrambled)
+                Replicated::new(REPLICATES, count / 2 / REPLICATES, scrambled(dims)?)
                     .seed(seed)
                     .estimate(&Mapped::new(integrand, &map))?
             }
         };
         Ok(estimate.mean)
     }
+}
+
+// What makes the sets is written here, so that it is compiled once and not for every integrand.
+
+fn scrambled(dims: u32) -> Result<impl Fn(u64) -> Sobol<HashedOwen> + Sync, Error> {
+    let sobol = Sobol::new(dims)?;
+    Ok(move |seed| sobol.clone().scrambled(HashedOwen { seed }))
+}
+
+fn folded(dims: u32) -> Result<impl Fn(u64) -> Folded<Shifted<LatticeSequence>> + Sync, Error> {
+    let lattice = LatticeSequence::new(dims)?;
+    Ok(move |seed| Folded::new(Shifted::new(lattice.clone(), seed)))
 }
 
 /// One count of one method.
@@ -185,56 +191,36 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
 /// Measures in `D` dimensions, with a function that is compiled for them.
 fn race<const D: usize>(arguments: &Arguments) -> Result<Vec<Row>, Error> {
     let family = arguments.integrand;
+    if matches!(
+        family,
+        Family::Keister | Family::RandomWalk | Family::Indicator
+    ) {
+        return Err(Error::refused(
+            "integrand",
+            "one of Genz' six, or peak",
+            family,
+        ));
+    }
     let Problem { a, u, width, .. } = Problem::new(family, arguments.dims);
     let square = move |x: &[f64; D]| x.iter().map(|x| (x - u) * (x - u)).sum::<f64>();
     let sum = |x: &[f64; D]| x.iter().sum::<f64>();
     let below = 1.0 / (a * a);
     let power = -arguments.dims.cast_signed() - 1;
     let fall = -0.5 / (width * width);
-    match family {
-        Family::Oscillatory => measure(
-            arguments,
-            &cube(move |x: [f64; D]| (2.0 * PI * u + a * sum(&x)).cos()),
-        ),
-        Family::ProductPeak => measure(
-            arguments,
-            &cube(move |x: [f64; D]| {
-                let factors = x.map(|x| below + (x - u) * (x - u));
-                1.0 / factors.iter().product::<f64>()
-            }),
-        ),
-        Family::CornerPeak => measure(
-            arguments,
-            &cube(move |x: [f64; D]| (1.0 + a * sum(&x)).powi(power)),
-        ),
-        Family::Gaussian => measure(
-            arguments,
-            &cube(move |x: [f64; D]| (-a * a * square(&x)).exp()),
-        ),
-        Family::Continuous => measure(
-            arguments,
-            &cube(move |x: [f64; D]| (-a * x.iter().map(|x| (x - u).abs()).sum::<f64>()).exp()),
-        ),
-        Family::Discontinuous => measure(
-            arguments,
-            &cube(move |x: [f64; D]| {
-                if x[0] < u && x[1] < u {
-                    (a * sum(&x)).exp()
-                } else {
-                    0.0
-                }
-            }),
-        ),
-        Family::Peak => measure(
-            arguments,
-            &cube(move |x: [f64; D]| (fall * square(&x)).exp()),
-        ),
-        Family::Keister | Family::RandomWalk | Family::Indicator => Err(Error::refused(
-            "integrand",
-            "one of Genz' six, or peak",
-            family,
-        )),
-    }
+    let integrand = cube(move |x: [f64; D]| match family {
+        Family::Oscillatory => (2.0 * PI * u + a * sum(&x)).cos(),
+        Family::ProductPeak => {
+            let factors = x.map(|x| below + (x - u) * (x - u));
+            1.0 / factors.iter().product::<f64>()
+        }
+        Family::CornerPeak => (1.0 + a * sum(&x)).powi(power),
+        Family::Gaussian => (-a * a * square(&x)).exp(),
+        Family::Continuous => (-a * x.iter().map(|x| (x - u).abs()).sum::<f64>()).exp(),
+        Family::Discontinuous if x[0] < u && x[1] < u => (a * sum(&x)).exp(),
+        Family::Peak => (fall * square(&x)).exp(),
+        _ => 0.0,
+    });
+    measure(arguments, &integrand)
 }
 
 fn measure<I: Integrand<Value = f64>>(

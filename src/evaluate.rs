@@ -95,8 +95,23 @@ pub(crate) fn evaluate<I: Integrand, S: Source>(
     integrand: &I,
     policy: NonFinite,
 ) -> Result<(), Error> {
+    spread(tallies, counts, &|source, indices, open| {
+        block(&sources[source], indices, open, tail, integrand, policy)
+    })
+}
+
+/// Evaluates one block, or a part of it, of a source: its points `indices`, after those of the open block.
+type Evaluate<'a, V> = dyn Fn(usize, Range<u64>, Option<Open<V>>) -> Part<V> + Sync + 'a;
+
+/// Spreads the blocks over the threads and takes their results in order. It is compiled once for a type of values, not for
+/// every integrand.
+fn spread<V: Value>(
+    tallies: &mut [Tally<V>],
+    counts: &[u64],
+    block: &Evaluate<'_, V>,
+) -> Result<(), Error> {
     // The jobs of a source follow one another; `ends` are the numbers of jobs up to and with it.
-    let mut ends = Vec::with_capacity(sources.len());
+    let mut ends = Vec::with_capacity(tallies.len());
     let mut jobs = 0;
     for (tally, &count) in tallies.iter().zip(counts) {
         let used = tally.used();
@@ -120,7 +135,7 @@ pub(crate) fn evaluate<I: Integrand, S: Source>(
             let first = (used / BLOCK + job - before) * BLOCK;
             let indices = first.max(used)..counts[source].min(first + BLOCK);
             let open = open.filter(|_| job == before);
-            block(&sources[source], indices, open, tail, integrand, policy)
+            block(source, indices, open)
         },
         |part| {
             while ends[source] <= taken {

@@ -1,6 +1,10 @@
 //! The only parallel loop: jobs are fixed by the count alone and their results taken in the order of
 //! their indices, so that neither the number of threads nor the feature `parallel` changes a bit.
 
+use core::ops::Range;
+#[cfg(feature = "parallel")]
+use std::sync::Mutex;
+
 /// Jobs whose results are held at once: few at first, so that a run that has to stop early does so; then more,
 /// enough to keep any machine busy and few enough to bound the memory.
 const FIRST_WAVE: u64 = 16;
@@ -68,18 +72,35 @@ fn inside(work: &mut (dyn FnMut() + Send)) {
     work();
 }
 
+/// The values of `job`, in order. Each is put into a place of its own, so that only what fills the places is compiled
+/// for a type of values.
 #[cfg(feature = "parallel")]
-fn wave<T: Send>(jobs: core::ops::Range<u64>, job: &(dyn Fn(u64) -> T + Sync)) -> Vec<T> {
-    use rayon::iter::{IntoParallelIterator, ParallelIterator};
+fn wave<T: Send>(jobs: Range<u64>, job: &(dyn Fn(u64) -> T + Sync)) -> Vec<T> {
     if rayon::current_num_threads() == 1 {
         return jobs.map(job).collect();
     }
-    // rayon's range of u64 has no exact length, and collects in order all the same.
-    jobs.into_par_iter().map(job).collect()
+    let length = usize::try_from(jobs.end - jobs.start).expect("results that memory can hold");
+    let places: Vec<Mutex<Option<T>>> = (0..length).map(|_| Mutex::new(None)).collect();
+    at_all(length, &|place| {
+        let value = job(jobs.start + place as u64);
+        *places[place].lock().expect("nobody panics with it") = Some(value);
+    });
+    let values = places
+        .into_iter()
+        .map(|place| place.into_inner().expect("nobody panics with it"));
+    values
+        .map(|value| value.expect("every job has run"))
+        .collect()
+}
+
+#[cfg(feature = "parallel")]
+fn at_all(length: usize, job: &(dyn Fn(usize) + Sync)) {
+    use rayon::iter::{IntoParallelIterator, ParallelIterator};
+    (0..length).into_par_iter().for_each(job);
 }
 
 #[cfg(not(feature = "parallel"))]
-fn wave<T: Send>(jobs: core::ops::Range<u64>, job: &(dyn Fn(u64) -> T + Sync)) -> Vec<T> {
+fn wave<T: Send>(jobs: Range<u64>, job: &(dyn Fn(u64) -> T + Sync)) -> Vec<T> {
     jobs.map(job).collect()
 }
 

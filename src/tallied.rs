@@ -73,7 +73,17 @@ pub(crate) fn run<E: Tallied, I: Integrand>(
         integrand,
         policy,
     );
-    let outcome = estimator.check(&tallies).and(outcome);
+    finish(estimator, &tallies, outcome, clock)
+}
+
+/// The estimate of a run that ended with `outcome`. Apart, since it does not depend on the integrand.
+fn finish<E: Tallied, V: Value>(
+    estimator: &E,
+    tallies: &Tallies<V>,
+    outcome: Result<(), Error>,
+    clock: Instant,
+) -> Result<Estimate<V>, Incomplete<V>> {
+    let outcome = estimator.check(tallies).and(outcome);
     let tallies = tallies.closed();
     let estimate = estimator.summary(&tallies).map(|estimate| Estimate {
         stop: if outcome.is_ok() {

@@ -141,60 +141,71 @@ impl Walk {
         let width = rows.width as usize;
         let stride = width.max(1);
         let mut room = vec![0.0; rows.number * stride];
-        let mut filled = range.start..range.start;
-        let mut values = Vec::with_capacity(rows.number);
+        let mut values = vec![T::Value::ZERO; rows.number];
         let mut index = range.start;
-        let mut entered = None;
-        while index < range.end {
-            if index == filled.end {
-                let left = range.end - index;
-                let number =
-                    usize::try_from(left).map_or(rows.number, |left| left.min(rows.number));
-                let ahead = &mut room[..number * width];
-                rows.points.fill(index, 0..rows.width, ahead);
-                filled = index..index + number as u64;
-            }
-            while self.ends[visit] <= index {
-                visit += 1;
-            }
-            if entered != Some(visit) {
+        while index < range.end && part.offender.is_none() {
+            // Batch by batch: coordinates, then values, then what they give in each stratum.
+            let left = range.end - index;
+            let number = usize::try_from(left).map_or(rows.number, |left| left.min(rows.number));
+            let (room, values) = (&mut room[..number * stride], &mut values[..number]);
+            rows.points
+                .fill(index, 0..rows.width, &mut room[..number * width]);
+            visitor.begin(number);
+            self.runs(visit, index, number, |visit, run| {
                 visitor.enter(self.order[visit] as usize);
-                entered = Some(visit);
-            }
-            let end = self.ends[visit].min(filled.end);
-            let [row, past] = [index, end].map(|index| {
-                usize::try_from(index - filled.start).expect("it is in memory") * stride
+                visitor.place(run.start, &mut room[run.start * stride..run.end * stride]);
             });
-            visitor.place(&mut room[row..past]);
-            let ahead = &room[row..past];
-            values.resize(ahead.len() / stride, T::Value::ZERO);
-            let points = ahead.chunks_exact(stride).zip(index..).enumerate();
-            for (value, (place, (row, index))) in values.iter_mut().zip(points) {
-                let row = &row[..width];
-                *value = visitor.value(
-                    place,
-                    Cursor::with_row(&rows.points, index, row, rows.width),
-                );
+            let points = room.chunks_exact(stride).zip(index..);
+            for ((place, value), (row, index)) in values.iter_mut().enumerate().zip(points) {
+                let u = Cursor::with_row(&rows.points, index, &row[..width], rows.width);
+                *value = visitor.value(place, u);
             }
-            let run = Stratum::sums(&values).or_else(|| {
-                let at = |place: usize| {
-                    let row = &ahead[place * stride..][..width];
-                    Cursor::with_prefix(&rows.points, index + place as u64, row)
-                };
-                part.sort_out(index, visit, &mut values, policy, |place| {
-                    visitor.look(place, at(place))
+            visitor.leave();
+            visit = self.runs(visit, index, number, |visit, run| {
+                if part.offender.is_some() {
+                    return;
+                }
+                let first = index + run.start as u64;
+                let values = &mut values[run.clone()];
+                let given = Stratum::sums(values).or_else(|| {
+                    let kept = part.sort_out(first, visit, values, policy, |place| {
+                        let at = first + place as u64;
+                        let place = run.start + place;
+                        let row = &room[place * stride..][..width];
+                        visitor.look(place, Cursor::with_prefix(&rows.points, at, row))
+                    });
+                    (kept > 0).then(|| Stratum::of(&values[..kept]))
                 });
-                (!values.is_empty()).then(|| Stratum::of(&values))
+                if let Some(given) = given {
+                    part.given.strata[visit - part.given.first].merge(&given);
+                }
             });
-            if let Some(run) = run {
-                part.given.strata[visit - part.given.first].merge(&run);
-            }
-            if part.offender.is_some() {
-                break;
-            }
-            index = end;
+            index += number as u64;
         }
         part
+    }
+
+    /// Hands the parts of the `number` points from `index` on that are in one stratum to `take`, with their visits from `visit` on.
+    /// Which visit the point after them is in, or was the last.
+    #[inline]
+    fn runs(
+        &self,
+        mut visit: usize,
+        index: u64,
+        number: usize,
+        mut take: impl FnMut(usize, Range<usize>),
+    ) -> usize {
+        let mut start = 0;
+        while start < number {
+            while self.ends[visit] <= index + start as u64 {
+                visit += 1;
+            }
+            let end = self.ends[visit] - index;
+            let end = usize::try_from(end).map_or(number, |end| end.min(number));
+            take(visit, start..end);
+            start = end;
+        }
+        visit
     }
 }
 
@@ -211,14 +222,20 @@ pub(crate) struct Rows {
 pub(crate) trait Visitor {
     type Value: Value;
 
-    /// The next points are in `stratum`.
+    /// The next points are so many.
+    fn begin(&mut self, _number: usize) {}
+
+    /// The next of them are in `stratum`.
     fn enter(&mut self, stratum: usize);
 
-    /// Moves points, a row of coordinates each, from the unit cube into the stratum.
-    fn place(&mut self, rows: &mut [f64]);
+    /// Moves points, a row of coordinates each, from the unit cube into the stratum: those from the `first` on.
+    fn place(&mut self, first: usize, rows: &mut [f64]);
 
-    /// The value at the point of the row `place` of those that were placed last, times the weight of the point.
+    /// The value at the point `place`, times the weight of the point.
     fn value(&mut self, place: usize, u: Cursor<'_, Independent>) -> Self::Value;
+
+    /// The values of all of them are known.
+    fn leave(&mut self) {}
 
     /// The same point once more.
     fn look(&mut self, place: usize, u: Cursor<'_, Independent>) -> Look<Self::Value>;
@@ -249,16 +266,16 @@ struct Given<V> {
 }
 
 impl<V: Value> Part<V> {
-    /// Takes those out of the `values` of one stratum, from the point `first` on, that are not finite.
+    /// Moves those of the `values` of one stratum, from the point `first` on, that are finite to the front. How many they are.
     #[cold]
     fn sort_out(
         &mut self,
         first: u64,
         visit: usize,
-        values: &mut Vec<V>,
+        values: &mut [V],
         policy: NonFinite,
         mut look: impl FnMut(usize) -> Look<V>,
-    ) {
+    ) -> usize {
         let mut kept = 0;
         for (place, index) in (0..values.len()).zip(first..) {
             if values[place].is_finite() {
@@ -276,7 +293,7 @@ impl<V: Value> Part<V> {
             }
             self.given.left_out.push((visit, look.weight));
         }
-        values.truncate(kept);
+        kept
     }
 }
 

@@ -67,7 +67,7 @@ impl<I: Integrand> Visitor for Cell<'_, I> {
     }
 
     #[inline]
-    fn place(&mut self, rows: &mut [f64]) {
+    fn place(&mut self, _: usize, rows: &mut [f64]) {
         // Unrolled for the usual numbers of axes.
         match self.corner.len() {
             0 => {}
@@ -115,7 +115,7 @@ mod tests {
         cell.enter(2 + 7 * 6);
         let most = 1.0 - f64::EPSILON / 2.0;
         let mut rows = [0.0, 0.0, 0.25, 0.5, 0.5, 0.5, most, most, most];
-        cell.place(&mut rows);
+        cell.place(0, &mut rows);
         let expected = [2.0, 6.0, 1.75, 2.5, 6.5, 3.5, 3.0, 7.0, 7.0].map(|x| x / 7.0);
         for (x, expected) in rows.into_iter().zip(expected) {
             assert!(

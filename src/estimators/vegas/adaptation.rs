@@ -109,7 +109,7 @@ impl<V: Value> Adaptation<V> {
         const ROWS: usize = 256;
         let points: u64 = self.counts.iter().sum();
         // Each part has its own sums for every bin: the more bins, the longer it is to be.
-        let walk = Walk::new(&self.counts, seed, (points / 64).clamp(1024, 16_384));
+        let walk = Walk::new(&self.counts, seed, (points / 64).clamp(4096, 16_384));
         let bins = self.map.table();
         let dimensions = self.map.dimensions();
         let rows = Rows {

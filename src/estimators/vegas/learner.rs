@@ -28,6 +28,9 @@ impl Squares {
     }
 }
 
+/// No bin has this number.
+const UNREAD: u32 = u32::MAX;
+
 /// An integrand in one stratum after the other, under a map; adds up its squares.
 pub(super) struct Learner<'a, I: Integrand> {
     integrand: &'a I,
@@ -39,10 +42,13 @@ pub(super) struct Learner<'a, I: Integrand> {
     place: Vec<Axis>,
     /// The reciprocal scale of each component.
     scale: Wide<I>,
-    /// The bin of its axis that each coordinate of the points at hand is in.
+    /// The bin that each coordinate of the points at hand is in, point after point; [`UNREAD`] if the integrand did not
+    /// ask for it.
     hits: Vec<u32>,
     /// What each of these points weighs.
     jacobians: Vec<f64>,
+    /// The square of the value at each of these points.
+    given: Vec<f64>,
     pub(super) squares: Vec<Squares>,
 }
 
@@ -69,22 +75,47 @@ impl<'a, I: Integrand> Learner<'a, I> {
             }),
             hits: Vec::new(),
             jacobians: Vec::new(),
+            given: Vec::new(),
             squares: vec![Squares::default(); bins.len()],
         }
     }
 
-    /// The bins of those coordinates of the point `place` that its integrand read, and what the point weighs.
-    #[inline]
-    fn read(&self, place: usize, u: &Cursor<'_, Independent>) -> (&[u32], f64) {
-        let axes = self.place.len();
-        let hits = &self.hits[place * axes..][..axes];
-        match hits.split_at_checked(u.dimension() as usize) {
-            Some((hits, [_, ..])) => {
-                let bins = self.bins.chunks_exact(self.number).zip(hits);
-                let factors = bins.map(|(bins, &hit)| bins[hit as usize].jacobian);
-                (hits, factors.product())
+    /// What the point `place` weighs if its integrand read so many coordinates.
+    #[cold]
+    fn weight(&self, place: usize, read: usize) -> f64 {
+        let bins = self.bins.chunks_exact(self.number);
+        let hits = &self.hits[place * self.place.len()..][..read];
+        bins.zip(hits)
+            .map(|(bins, &hit)| bins[hit as usize].jacobian)
+            .product()
+    }
+
+    /// Moves rows of a known number of coordinates into the stratum.
+    #[inline(always)]
+    fn place_rows<const AXES: usize>(&mut self, first: usize, rows: &mut [f64]) {
+        let axes = if AXES > 0 { AXES } else { self.place.len() };
+        let Some(place) = self.place.get(..axes) else {
+            return;
+        };
+        // Signed, as the machine converts them.
+        let last = i32::try_from(self.number - 1).unwrap_or(i32::MAX);
+        let hits = self.hits[first * axes..].chunks_exact_mut(axes);
+        let points = rows
+            .chunks_exact_mut(axes)
+            .zip(hits)
+            .zip(&mut self.jacobians[first..]);
+        for ((row, hits), jacobian) in points {
+            *jacobian = 1.0;
+            let bins = self.bins.chunks_exact(self.number);
+            for ((x, hit), (axis, bins)) in row.iter_mut().zip(hits).zip(place.iter().zip(bins)) {
+                let scaled = (axis.cell + *x) * axis.scale;
+                #[expect(clippy::cast_possible_truncation, reason = "below the number of bins")]
+                let number = (scaled as i32).min(last);
+                *hit = number.cast_unsigned();
+                let bin = bins[*hit as usize];
+                *x = bin.image(scaled - f64::from(number));
+                *jacobian *= bin.jacobian;
             }
-            _ => (hits, self.jacobians[place]),
         }
     }
 }
@@ -96,39 +127,36 @@ impl<I: Integrand> Visitor for Learner<'_, I> {
         self.strata.enter(stratum, &mut self.place);
     }
 
+    fn begin(&mut self, number: usize) {
+        self.jacobians.clear();
+        self.jacobians.resize(number, 1.0);
+        self.given.resize(number, 0.0);
+        self.hits.resize(number * self.place.len(), UNREAD);
+    }
+
     #[inline]
-    fn place(&mut self, rows: &mut [f64]) {
-        let axes = self.place.len();
-        let points = rows.len() / axes.max(1);
-        self.hits.resize(points * axes, 0);
-        self.jacobians.resize(points, 1.0);
-        if axes == 0 {
-            return;
-        }
-        // Signed, as the machine converts them.
-        let last = i32::try_from(self.number - 1).unwrap_or(i32::MAX);
-        let rows = rows.chunks_exact_mut(axes);
-        let hits = self.hits.chunks_exact_mut(axes);
-        for ((row, hits), jacobian) in rows.zip(hits).zip(&mut self.jacobians) {
-            *jacobian = 1.0;
-            let bins = self.bins.chunks_exact(self.number);
-            let place = self.place.iter().zip(bins);
-            for ((x, hit), (axis, bins)) in row.iter_mut().zip(hits).zip(place) {
-                let scaled = (axis.cell + *x) * axis.scale;
-                #[expect(clippy::cast_possible_truncation, reason = "below the number of bins")]
-                let number = (scaled as i32).min(last);
-                *hit = number.cast_unsigned();
-                let bin = bins[*hit as usize];
-                *x = bin.image(scaled - f64::from(number));
-                *jacobian *= bin.jacobian;
-            }
+    fn place(&mut self, first: usize, rows: &mut [f64]) {
+        // Unrolled for the usual numbers of axes.
+        match self.place.len() {
+            0 => {}
+            2 => self.place_rows::<2>(first, rows),
+            3 => self.place_rows::<3>(first, rows),
+            4 => self.place_rows::<4>(first, rows),
+            5 => self.place_rows::<5>(first, rows),
+            _ => self.place_rows::<0>(first, rows),
         }
     }
 
     #[inline]
     fn value(&mut self, place: usize, mut u: Cursor<'_, Independent>) -> Wide<I> {
         let value = self.integrand.evaluate(&mut u).widen();
-        let (hits, jacobian) = self.read(place, &u);
+        let (read, axes) = (u.dimension() as usize, self.place.len());
+        let jacobian = if read < axes {
+            self.hits[place * axes..][read..axes].fill(UNREAD);
+            self.weight(place, read)
+        } else {
+            self.jacobians[place]
+        };
         let value: Wide<I> = value.map(|value| value * jacobian);
         let mut square = 0.0;
         let _ = value.zip(self.scale, |value, scale| {
@@ -137,17 +165,22 @@ impl<I: Integrand> Visitor for Learner<'_, I> {
             square += relative * relative;
             value
         });
-        if !value.is_finite() {
-            square = 0.0;
-        }
-        let read = hits.len();
-        let hits = self.hits[place * self.place.len()..][..read].iter();
-        for (squares, &hit) in self.squares.chunks_exact_mut(self.number).zip(hits) {
-            let squares = &mut squares[hit as usize];
-            squares.sum += square;
-            squares.count += 1.0;
-        }
+        self.given[place] = if value.is_finite() { square } else { 0.0 };
         value
+    }
+
+    #[inline]
+    fn leave(&mut self) {
+        let axes = self.place.len().max(1);
+        for (axis, squares) in self.squares.chunks_exact_mut(self.number).enumerate() {
+            let hits = self.hits[axis..].iter().step_by(axes);
+            for (&hit, square) in hits.zip(&self.given) {
+                if let Some(squares) = squares.get_mut(hit as usize) {
+                    squares.sum += square;
+                    squares.count += 1.0;
+                }
+            }
+        }
     }
 
     fn look(&mut self, place: usize, u: Cursor<'_, Independent>) -> Look<Wide<I>> {
@@ -157,7 +190,8 @@ impl<I: Integrand> Visitor for Learner<'_, I> {
             coordinates: &mut coordinates,
         };
         let value = self.integrand.evaluate(&mut u).widen();
-        let (_, weight) = self.read(place, &u.inner);
+        let read = (u.inner.dimension() as usize).min(self.place.len());
+        let weight = self.weight(place, read);
         Look {
             coordinates,
             value,

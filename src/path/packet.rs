@@ -90,7 +90,9 @@ impl Packet {
 
     /// What [`Paths::radiance`] gives for each of the points, times the weight that its start has.
     ///
-    /// The starts are behind a pointer so that the loop is compiled for every kind of sampler, but not of view.
+    /// The starts are behind a pointer, and it is not inlined, so that the loop is compiled for every kind of sampler, but not of
+    /// view.
+    #[inline(never)]
     pub(in crate::path) fn radiance<U: Sampler>(
         &self,
         paths: Paths,

@@ -2,6 +2,9 @@
 //!
 //! Rays are those of fixed point sets; nothing here is statistical.
 
+#[path = "shapes/near.rs"]
+mod near;
+
 use approx::assert_relative_eq;
 use core::f32::consts::{PI, TAU};
 use estimand::path::bsdf::Lambertian;

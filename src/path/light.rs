@@ -98,6 +98,13 @@ impl Emitter {
         }
     }
 
+    /// Draws its points by solid angle for what is near, where there is a closed form.
+    pub(in crate::path) fn by_solid_angle(&mut self) {
+        if let Primitive::Flat(flat) = &mut self.shape {
+            *flat = flat.by_solid_angle();
+        }
+    }
+
     /// How much light it emits in all, up to a factor that is the same for all emitters.
     fn power(&self) -> f64 {
         f64::from(self.shape.area()) * self.radiance.as_dvec3().element_sum()

@@ -269,6 +269,22 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
                 copies.push(copy);
             }
         }
+        let mut emitters = core::mem::take(&mut parts.emitters);
+        let flat = |shape: &Primitive| matches!(shape, Primitive::Flat(_));
+        // Many paths at once draw from the area: that costs more samples, but each takes less than half the time.
+        let at_once = shapes.len() <= FEW
+            && shapes.iter().all(flat)
+            && meshes.is_empty()
+            && copies.is_empty()
+            && parts
+                .bsdfs
+                .iter()
+                .all(|bsdf| bsdf.as_lambertian().is_some())
+            && emitters.iter().all(|emitter| emitter.picture.is_none())
+            && environment.constant().is_some();
+        if !at_once {
+            emitters.iter_mut().for_each(Emitter::by_solid_angle);
+        }
         let geometry = Geometry::new(shapes, meshes, copies);
         check_scene(geometry.bounds())?;
         #[cfg_attr(
@@ -279,7 +295,7 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
             geometry,
             owners: parts.owners,
             bsdfs: parts.bsdfs,
-            lights: L::new(parts.emitters)?,
+            lights: L::new(emitters)?,
             environment,
             #[cfg(feature = "simd")]
             packet: None,

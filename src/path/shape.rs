@@ -18,6 +18,7 @@ mod cylinder;
 mod disk;
 mod flat;
 mod mesh;
+mod near;
 mod sphere;
 
 use glam::Vec3A;

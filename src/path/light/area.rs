@@ -11,7 +11,8 @@ use crate::{Error, Sampler};
 /// Shapes that emit light from their outer sides; none at all is a number too.
 ///
 /// Two coordinates draw a point, however many shapes there are: the first also chooses the shape, in
-/// proportion to its power, and what is left of it is a coordinate again.
+/// proportion to its power, and what is left of it is a coordinate again. How a shape draws its points is
+/// [its own affair](Shape::sample): spheres, and rectangles and triangles nearby, draw by solid angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AreaLights {
     emitters: Vec<Emitter>,

@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec2Swizzles, Vec3A};
 
+use super::near::{Near, Outline};
 use super::{Shape, density_of_area};
 use crate::Error;
 use crate::path::ray::{Ray, Surface, gamma};
@@ -35,6 +36,8 @@ pub struct Flat {
     pub(in crate::path) area: f32,
     /// Whether the edges have changed places, which texture coordinates do not follow.
     turned: bool,
+    /// How it is drawn by solid angle; `None` if it is not.
+    outline: Option<Outline>,
 }
 
 impl Flat {
@@ -110,7 +113,14 @@ impl Flat {
             margin,
             area: single(area),
             turned: false,
+            outline: None,
         })
+    }
+
+    /// The shape as `from` sees it, if it is to be drawn by solid angle.
+    #[inline]
+    fn near(&self, from: Vec3A) -> Option<Near> {
+        self.outline?.near(self, from)
     }
 
     /// The point with the coordinates `s` and `t` along the edges.
@@ -127,7 +137,7 @@ impl Flat {
     /// The same points with the outer side on the other side, and the same texture coordinates.
     #[must_use]
     pub fn turned(self) -> Self {
-        Self {
+        let turned = Self {
             normal: -self.normal,
             first_edge: self.second_edge,
             second_edge: self.first_edge,
@@ -136,6 +146,35 @@ impl Flat {
             slack: [self.slack[1], self.slack[0]],
             inset: [self.inset[1], self.inset[0]],
             turned: !self.turned,
+            ..self
+        };
+        match self.outline {
+            None => turned,
+            Some(_) => turned.by_solid_angle(),
+        }
+    }
+
+    /// The same points, [drawn](Shape::sample) uniformly from the solid angle for what is near: for points on the outer side whose
+    /// distance from the middle is less than about twice the shape's size. For others it makes no difference worth the
+    /// time, and they go on drawing from the area, as points do in front of a parallelogram that is no rectangle.
+    ///
+    /// The scene does this to its lights, unless it is one that is traced many paths at once.
+    ///
+    /// ```
+    /// use estimand::path::shape::{Flat, Shape};
+    ///
+    /// let lamp = Flat::parallelogram([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0])?.by_solid_angle();
+    /// // From the middle of a cube, a side fills a sixth of all directions.
+    /// let middle = glam::Vec3A::Z;
+    /// let point = lamp.sample(middle, [0.3, 0.8]);
+    /// let all = 4.0 * std::f32::consts::PI;
+    /// assert!((lamp.density(middle, &point) - 6.0 / all).abs() < 1e-6);
+    /// # Ok::<(), estimand::Error>(())
+    /// ```
+    #[must_use]
+    pub fn by_solid_angle(self) -> Self {
+        Self {
+            outline: Outline::of(&self),
             ..self
         }
     }
@@ -218,13 +257,17 @@ impl Shape for Flat {
         self.area
     }
 
-    /// Uniform on the area. A triangle takes the half of the square folded onto the other, without a
+    /// Uniform on the area, or [on the solid angle](Flat::by_solid_angle). On the area a triangle takes the half of the square folded onto the other, without a
     /// square root.[^heitz]
     ///
     /// [^heitz]: Heitz, Eric (2019). *A Low-Distortion Map Between Triangle and Square*.
     ///     <https://hal.science/hal-02073696>
     #[inline]
-    fn sample(&self, _: Vec3A, [a, b]: [f32; 2]) -> Surface {
+    fn sample(&self, from: Vec3A, [a, b]: [f32; 2]) -> Surface {
+        if let Some(near) = self.near(from) {
+            let [s, t] = near.sample(self, [a, b]);
+            return self.at(s, t);
+        }
         if self.slant == 0.0 {
             return self.at(a, b);
         }
@@ -239,6 +282,9 @@ impl Shape for Flat {
 
     #[inline]
     fn density(&self, from: Vec3A, surface: &Surface) -> f32 {
-        density_of_area(from, surface, self.area)
+        match self.near(from) {
+            Some(near) => near.solid_angle().recip(),
+            None => density_of_area(from, surface, self.area),
+        }
     }
 }

@@ -1,11 +1,11 @@
 //! Pictures of what is around a scene.
 
-use core::f32::consts::FRAC_1_PI;
 use core::f64::consts::PI;
 
 use glam::{DMat3, Mat3A, Vec3, Vec3A};
 
 use super::{Emission, Environment, Illumination};
+use crate::path::frame::{single, turn, turns};
 use crate::path::{Segment, Surface, color};
 use crate::warp::{Piecewise2d, Warp};
 use crate::{Error, Sampler};
@@ -59,7 +59,8 @@ impl Sky {
         let weights: Vec<f64> = (0..rows * width)
             .map(|square| {
                 let (row, column) = (square / width, square % width);
-                mean_luminance(corners(&pixels, width, row, column)) * solid_angle(row)
+                let luminance = mean_luminance(corners(&pixels, width, row, column));
+                f64::from(luminance) * solid_angle(row)
             })
             .collect();
         let directions = Piecewise2d::new(&weights, width)?;
@@ -85,8 +86,8 @@ impl Sky {
     fn place(&self, direction: Vec3A) -> ([f32; 2], f32) {
         let d = self.inward * direction;
         let sine = (d.x * d.x + d.z * d.z).sqrt();
-        let longitude = d.x.atan2(-d.z) * (0.5 * FRAC_1_PI) - 0.5 / self.width as f32;
-        let latitude = sine.atan2(d.y) * FRAC_1_PI;
+        let longitude = turns(d.x, -d.z) - 0.5 / self.width as f32;
+        let latitude = 2.0 * turns(sine, d.y);
         let within = |u: f32| u.clamp(0.0, 1.0 - f32::EPSILON / 2.0);
         (
             [within(longitude - longitude.floor()), within(latitude)],
@@ -111,12 +112,13 @@ impl Sky {
         let above = corners[0].lerp(corners[1], s);
         let below = corners[2].lerp(corners[3], s);
         let density = if sine > 0.0 {
-            (mean_luminance(corners) * self.density[row] / f64::from(sine)) as f32
+            let luminance = f64::from(mean_luminance(corners));
+            (luminance * self.density[row] / f64::from(sine)) as f32
         } else {
             0.0
         };
         Emission {
-            radiance: above.lerp(below, t).into(),
+            radiance: above.lerp(below, t),
             density,
         }
     }
@@ -124,17 +126,17 @@ impl Sky {
 
 /// The pixels around a square: two above, two below.
 #[inline]
-fn corners(pixels: &[Vec3], width: usize, row: usize, column: usize) -> [Vec3; 4] {
+fn corners(pixels: &[Vec3], width: usize, row: usize, column: usize) -> [Vec3A; 4] {
     let next = if column + 1 == width { 0 } else { column + 1 };
     let [above, below] = [row, row + 1].map(|row| &pixels[row * width..][..width]);
-    [above[column], above[next], below[column], below[next]]
+    [above[column], above[next], below[column], below[next]].map(Vec3A::from)
 }
 
 /// The luminance of the mean of some pixels.
 #[inline]
-fn mean_luminance(corners: [Vec3; 4]) -> f64 {
+fn mean_luminance(corners: [Vec3A; 4]) -> f32 {
     let [a, b, c, d] = corners.map(|pixel| 0.25 * pixel);
-    color::luminance((a + b) + (c + d))
+    ((a + b) + (c + d)).dot(color::LUMINANCE)
 }
 
 impl Environment for Sky {
@@ -149,10 +151,10 @@ impl Environment for Sky {
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
         let [x, y] = self.directions.sample(u.next_2d());
         // Angles from the nearer pole keep their digits.
-        let (sine, height) = ((PI * y.min(1.0 - y)) as f32).sin_cos();
+        let [height, sine] = turn((0.5 * y.min(1.0 - y)) as f32);
         let cosine = if y < 0.5 { height } else { -height };
-        let turns = x + 0.5 / self.width as f64;
-        let (along, against) = ((2.0 * PI * turns) as f32).sin_cos();
+        let turned = x + 0.5 / self.width as f64;
+        let [against, along] = turn(single(turned - turned.floor()));
         let direction = Vec3A::new(along * sine, cosine, -against * sine);
         let Emission { radiance, density } = self.emission([x, y], sine);
         (density > 0.0 && density < f32::INFINITY).then(|| Illumination {

@@ -137,3 +137,35 @@ fn light_from_nearby_has_less_noise_by_solid_angle() {
         assert!(1.5 * after < before, "height {z}: {after} after {before}");
     }
 }
+
+/// Half of all directions go to what is next to a point, and no point is so near that nothing does.
+#[test]
+fn what_is_next_to_a_shape_is_lit_by_half_of_all_directions() {
+    let square = Flat::parallelogram([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
+    let triangle = Flat::triangle([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).unwrap();
+    for (flat, middle) in [(square, 0.5), (triangle, 1.0 / 3.0)] {
+        let flat = flat.by_solid_angle();
+        for power in 0..40 {
+            let height = 0.01 * 0.5_f32.powi(power);
+            let from = Vec3A::new(middle + 1e-3, middle, height);
+            for u in [[0.0, 0.0], [0.3, 0.8], [1.0 - f32::EPSILON / 2.0; 2]] {
+                let point = flat.sample(from, u);
+                assert!(point.point.is_finite(), "{point:?} from {from}");
+                let density = flat.density(from, &point);
+                if height > 2e-4 {
+                    let half = density * core::f32::consts::TAU;
+                    assert!(
+                        (0.99..1.1).contains(&half),
+                        "{half} of one half from {height}"
+                    );
+                } else {
+                    // From the area: the denser, the farther to the side.
+                    assert!(
+                        density > 0.0 && density <= f32::MAX,
+                        "{density} from {height}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -27,7 +27,7 @@ impl Outline {
     }
 
     /// The shape as `from` sees it, if that is on its outer side and near: from afar, and from beside it, the solid angle is small,
-    /// so that nothing is to be gained and digits are to be lost.
+    /// so that nothing is to be gained and digits are to be lost; and on the shape itself it is as large as it can be.
     #[inline]
     pub(super) fn near(self, flat: &Flat, from: Vec3A) -> Option<Near> {
         let corner = flat.corner - from;
@@ -35,7 +35,8 @@ impl Outline {
         let edges = flat.first_edge + flat.second_edge;
         let to_middle = corner + edges * if flat.slant > 0.0 { 1.0 / 3.0 } else { 0.5 };
         let squared = to_middle.length_squared();
-        if !(flat.area * height > SMALLEST * (squared * squared.sqrt())) {
+        let seen = flat.area * height > SMALLEST * (squared * squared.sqrt());
+        if !(seen && height * height > CLOSEST * flat.area) {
             return None;
         }
         match self {
@@ -49,6 +50,10 @@ impl Outline {
 
 /// The solid angle, as that of a small shape in the same place, from which on a shape is near.
 const SMALLEST: f32 = 0.2;
+
+/// The square of the height above a shape, over its area, from which on it is drawn by solid angle: nearer to it that is half of all
+/// directions, a full turn of the angles, which rounding may take for none.
+const CLOSEST: f32 = 1e-8;
 
 /// A shape seen from nearby.
 #[derive(Clone, Copy, Debug)]

@@ -233,6 +233,23 @@ fn polygons_seen_from_a_point() {
     }
 }
 
+/// Close to its plane a triangle fills nearly half of all directions, and its corners are nearly in one plane with the point.
+#[test]
+fn triangles_are_sampled_evenly_from_close_to_their_plane() {
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    for height in [1e-2, 1e-4, 1e-6] {
+        let triangle = SphericalTriangle::new(corners, [0.33, 0.33, height]).unwrap();
+        for index in 0..1000 {
+            let u = uniform::<2>(index);
+            let direction = triangle.sample(u);
+            // The part of the triangle before it, whose solid angle is a sum of angles.
+            let back = triangle.invert(direction).unwrap();
+            let off = (back[0] - u[0]).abs().max((back[1] - u[1]).abs());
+            assert!(off < 1e-7, "{u:?} became {back:?} from {height}");
+        }
+    }
+}
+
 #[test]
 fn solid_angles() {
     // Van Oosterom and Strackee's formula (1983) for the triangle; two triangles make a rectangle.

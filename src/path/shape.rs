@@ -55,6 +55,14 @@ pub trait Shape {
     /// The density, per solid angle seen from `from`, with which [`sample`](Self::sample) draws the point of
     /// `surface`: positive, and [`f32::MAX`] at most, which stands for a point seen edge-on.
     fn density(&self, from: Vec3A, surface: &Surface) -> f32;
+
+    /// What [`sample`](Self::sample) draws, with its [`density`](Self::density): in one go, where both need the same.
+    #[inline]
+    fn sample_with_density(&self, from: Vec3A, u: [f32; 2]) -> (Surface, f32) {
+        let surface = self.sample(from, u);
+        let density = self.density(from, &surface);
+        (surface, density)
+    }
 }
 
 /// Any of the shapes of this module: all that a scene can be made of.
@@ -152,6 +160,16 @@ impl Shape for Primitive {
             Self::Sphere(sphere) => sphere.sample(from, u),
             Self::Disk(disk) => disk.sample(from, u),
             Self::Cylinder(cylinder) => cylinder.sample(from, u),
+        }
+    }
+
+    #[inline]
+    fn sample_with_density(&self, from: Vec3A, u: [f32; 2]) -> (Surface, f32) {
+        match self {
+            Self::Flat(flat) => flat.sample_with_density(from, u),
+            Self::Sphere(sphere) => sphere.sample_with_density(from, u),
+            Self::Disk(disk) => disk.sample_with_density(from, u),
+            Self::Cylinder(cylinder) => cylinder.sample_with_density(from, u),
         }
     }
 

@@ -26,8 +26,8 @@ pub struct SphericalTriangle {
     corners: [Vector; 3],
     /// The angle at the first corner.
     alpha: f64,
-    /// The cosine of the side opposite the third corner.
-    cos_side: f64,
+    /// The tangent of half the side opposite the third corner.
+    tan_half_side: f64,
     solid_angle: f64,
 }
 
@@ -53,7 +53,7 @@ impl SphericalTriangle {
         Ok(Self {
             corners: [a, b, c],
             alpha,
-            cos_side: dot(a, b),
+            tan_half_side: length(minus(a, b)) / length(along(a, 1.0, b)),
             solid_angle,
         })
     }
@@ -69,9 +69,9 @@ fn orthogonal(v: Vector, axis: Vector) -> Vector {
     unit(along(v, -dot(v, axis), axis))
 }
 
-/// A number whose square and this number's add up to 1.
-fn other(cos: f64) -> f64 {
-    (1.0 - cos * cos).max(0.0).sqrt()
+/// The direction at the angle with this cosine and sine from `axis`, in the plane of `axis` and `toward`.
+fn beside(axis: Vector, toward: Vector, cos: f64, sin: f64) -> Vector {
+    along(axis.map(|x| x * cos), sin, orthogonal(toward, axis))
 }
 
 impl Warp<2> for SphericalTriangle {
@@ -79,26 +79,25 @@ impl Warp<2> for SphericalTriangle {
 
     fn sample(&self, [u, v]: [f64; 2]) -> [f64; 3] {
         let [a, b, c] = self.corners;
-        // The corner of the triangle with the share u of the solid angle, on the side from a to c.
-        let (sin, cos) = (u * self.solid_angle - self.alpha).sin_cos();
-        let (sin_alpha, cos_alpha) = self.alpha.sin_cos();
-        let along_u = cos - cos_alpha;
-        let along_v = sin + sin_alpha * self.cos_side;
-        let above = (along_v * cos - along_u * sin) * cos_alpha - along_v;
-        let below = (along_v * sin + along_u * cos) * sin_alpha;
-        // At u = 0 the quotient is 0 / 0: the corner is a itself.
-        let cos_b = if below == 0.0 {
-            1.0
-        } else {
-            (above / below).clamp(-1.0, 1.0)
-        };
-        let corner = if cos_b == 1.0 {
-            a
-        } else {
-            along(a.map(|x| x * cos_b), other(cos_b), orthogonal(c, a))
-        };
-        let cos = 1.0 - v * (1.0 - dot(corner, b));
-        unit(along(b.map(|x| x * cos), other(cos), orthogonal(corner, b)))
+        // The corner of the triangle with the share u of the solid angle, on the side from a to c: the tangents of half the sides and of
+        // half the solid angle tell how far, and keep their digits where the three corners are nearly in one plane.
+        let half = 0.5 * u * self.solid_angle;
+        let (sin_half, rest) = (half.sin(), self.tan_half_side * (self.alpha - half).sin());
+        let square = rest * rest + sin_half * sin_half;
+        let corner = beside(
+            a,
+            c,
+            (rest - sin_half) * (rest + sin_half) / square,
+            2.0 * rest * sin_half / square,
+        );
+        let away = length(minus(corner, b));
+        let less = 0.5 * v * away * away;
+        unit(beside(
+            b,
+            corner,
+            1.0 - less,
+            (less * (2.0 - less)).max(0.0).sqrt(),
+        ))
     }
 
     fn density(&self, direction: [f64; 3]) -> f64 {

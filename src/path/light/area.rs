@@ -12,7 +12,7 @@ use crate::{Error, Sampler};
 ///
 /// Two coordinates draw a point, however many shapes there are: the first also chooses the shape, in
 /// proportion to its power, and what is left of it is a coordinate again. How a shape draws its points is
-/// [its own affair](Shape::sample): spheres, and rectangles and triangles nearby, draw by solid angle.
+/// [its own affair](Shape::sample).
 #[derive(Clone, Debug, PartialEq)]
 pub struct AreaLights {
     emitters: Vec<Emitter>,
@@ -107,8 +107,10 @@ impl Light for AreaLights {
         let [a, b] = u.next_2d();
         let (chosen, a) = self.choose(a);
         let emitter = self.emitters.get(chosen)?;
-        let there = emitter.shape.sample(from.point, singles([a, b]));
-        let density = self.choices[chosen].times(emitter.shape.density(from.point, &there));
+        let drawn = emitter
+            .shape
+            .sample_with_density(from.point, singles([a, b]));
+        let (there, density) = (drawn.0, self.choices[chosen].times(drawn.1));
         let lit = there.normal.dot(from.point - there.point) > 0.0;
         if !(lit && density > 0.0 && density < f32::MAX) {
             return None;

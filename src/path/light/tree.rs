@@ -339,8 +339,10 @@ impl Light for LightTree {
         let [a, b] = u.next_2d();
         let chosen = self.choose(from.point, a)?;
         let emitter = &self.emitters[chosen.emitter as usize];
-        let there = emitter.shape.sample(from.point, singles([chosen.left, b]));
-        let density = chosen.probability * emitter.shape.density(from.point, &there);
+        let drawn = emitter
+            .shape
+            .sample_with_density(from.point, singles([chosen.left, b]));
+        let (there, density) = (drawn.0, chosen.probability * drawn.1);
         let lit = there.normal.dot(from.point - there.point) > 0.0;
         if !(lit && density > 0.0 && density < f32::MAX) {
             return None;

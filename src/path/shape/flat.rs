@@ -123,6 +123,27 @@ impl Flat {
         self.outline?.near(self, from)
     }
 
+    #[inline]
+    fn at_near(&self, near: &Near, u: [f32; 2]) -> Surface {
+        let [s, t] = near.sample(self, u);
+        self.at(s, t)
+    }
+
+    /// The point at `u`, uniform on the area.
+    #[inline]
+    fn at_area(&self, [a, b]: [f32; 2]) -> Surface {
+        if self.slant == 0.0 {
+            return self.at(a, b);
+        }
+        if b > a {
+            let s = 0.5 * a;
+            self.at(s, b - s)
+        } else {
+            let t = 0.5 * b;
+            self.at(a - t, t)
+        }
+    }
+
     /// The point with the coordinates `s` and `t` along the edges.
     #[inline]
     fn at(&self, s: f32, t: f32) -> Surface {
@@ -154,9 +175,11 @@ impl Flat {
         }
     }
 
-    /// The same points, [drawn](Shape::sample) uniformly from the solid angle for what is near: for points on the outer side whose
-    /// distance from the middle is less than about twice the shape's size. For others it makes no difference worth the
-    /// time, and they go on drawing from the area, as points do in front of a parallelogram that is no rectangle.
+    /// The same points, [drawn](Shape::sample) uniformly from the solid angle for what is near: for points on the outer side from which
+    /// a small shape of this area in the middle would fill 0.2 steradians or more; straight above a square those closer than about
+    /// twice its side. For others it makes no difference worth the time, and they go on drawing from the area. So do
+    /// points closer than a hundredth of the longest edge, and all points in front of shapes thinner than a fiftieth of it, where `f32` has
+    /// too few digits, and of parallelograms that are no rectangles.
     ///
     /// The scene does this to its lights, unless it is one that is traced many paths at once.
     ///
@@ -263,20 +286,21 @@ impl Shape for Flat {
     /// [^heitz]: Heitz, Eric (2019). *A Low-Distortion Map Between Triangle and Square*.
     ///     <https://hal.science/hal-02073696>
     #[inline]
-    fn sample(&self, from: Vec3A, [a, b]: [f32; 2]) -> Surface {
-        if let Some(near) = self.near(from) {
-            let [s, t] = near.sample(self, [a, b]);
-            return self.at(s, t);
+    fn sample(&self, from: Vec3A, u: [f32; 2]) -> Surface {
+        match self.near(from) {
+            Some(near) => self.at_near(&near, u),
+            None => self.at_area(u),
         }
-        if self.slant == 0.0 {
-            return self.at(a, b);
-        }
-        if b > a {
-            let s = 0.5 * a;
-            self.at(s, b - s)
-        } else {
-            let t = 0.5 * b;
-            self.at(a - t, t)
+    }
+
+    #[inline]
+    fn sample_with_density(&self, from: Vec3A, u: [f32; 2]) -> (Surface, f32) {
+        match self.near(from) {
+            Some(near) => (self.at_near(&near, u), near.solid_angle().recip()),
+            None => {
+                let surface = self.at_area(u);
+                (surface, density_of_area(from, &surface, self.area))
+            }
         }
     }
 

@@ -5,29 +5,48 @@ use core::f32::consts::TAU;
 use glam::Vec3A;
 
 use super::Flat;
-use crate::path::frame::turn;
+use crate::path::frame::{turn, turns};
 
 /// How a [`Flat`] may be drawn by solid angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Outline {
     /// With edges at right angles, of these lengths.
-    Rectangle([f32; 2]),
-    Triangle,
+    Rectangle { lengths: [f32; 2] },
+    /// Whose longest edge has this length.
+    Triangle { longest: f32 },
 }
 
 impl Outline {
-    /// `None` for a parallelogram that is no rectangle: there is no closed form.
+    /// `None` for a parallelogram that is no rectangle, since there is no closed form, and for thin shapes, which lose too many
+    /// digits.
     pub(super) fn of(flat: &Flat) -> Option<Self> {
-        if flat.slant > 0.0 {
-            return Some(Self::Triangle);
+        let [first, second] = [flat.first_edge, flat.second_edge];
+        let lengths = [first, second].map(Vec3A::length);
+        let outline = if flat.slant > 0.0 {
+            Self::Triangle {
+                longest: lengths[0].max(lengths[1]).max(first.distance(second)),
+            }
+        } else {
+            Self::Rectangle { lengths }
+        };
+        let longest = outline.longest();
+        let width = flat.area / (longest * if flat.slant > 0.0 { 0.5 } else { 1.0 });
+        let skew = first.dot(second).abs();
+        let closed = flat.slant > 0.0 || skew <= 1e-6 * lengths[0] * lengths[1];
+        (closed && width > THINNEST * longest).then_some(outline)
+    }
+
+    /// The longest edge.
+    #[inline]
+    fn longest(self) -> f32 {
+        match self {
+            Self::Rectangle { lengths } => lengths[0].max(lengths[1]),
+            Self::Triangle { longest } => longest,
         }
-        let lengths = [flat.first_edge, flat.second_edge].map(Vec3A::length);
-        let skew = flat.first_edge.dot(flat.second_edge).abs();
-        (skew <= 1e-6 * lengths[0] * lengths[1]).then_some(Self::Rectangle(lengths))
     }
 
     /// The shape as `from` sees it, if that is on its outer side and near: from afar, and from beside it, the solid angle is small,
-    /// so that nothing is to be gained and digits are to be lost; and on the shape itself it is as large as it can be.
+    /// so that nothing is to be gained and digits are to be lost. They are lost in its plane as well.
     #[inline]
     pub(super) fn near(self, flat: &Flat, from: Vec3A) -> Option<Near> {
         let corner = flat.corner - from;
@@ -36,24 +55,25 @@ impl Outline {
         let to_middle = corner + edges * if flat.slant > 0.0 { 1.0 / 3.0 } else { 0.5 };
         let squared = to_middle.length_squared();
         let seen = flat.area * height > SMALLEST * (squared * squared.sqrt());
-        if !(seen && height * height > CLOSEST * flat.area) {
+        if !(seen && height > LOWEST * self.longest()) {
             return None;
         }
-        match self {
-            Self::Rectangle(lengths) => Some(Near::Rectangle(Rectangle::new(
-                flat, lengths, corner, height,
-            ))),
-            Self::Triangle => Triangle::new(flat, corner).map(Near::Triangle),
-        }
+        Some(match self {
+            Self::Rectangle { lengths } => {
+                Near::Rectangle(Rectangle::new(flat, lengths, corner, height))
+            }
+            Self::Triangle { .. } => Near::Triangle(Triangle::new(flat, corner, height)),
+        })
     }
 }
 
 /// The solid angle, as that of a small shape in the same place, from which on a shape is near.
 const SMALLEST: f32 = 0.2;
 
-/// The square of the height above a shape, over its area, from which on it is drawn by solid angle: nearer to it that is half of all
-/// directions, a full turn of the angles, which rounding may take for none.
-const CLOSEST: f32 = 1e-8;
+/// The width and the height above the shape, over its longest edge, from which on it is drawn by solid angle. There the solid angle is
+/// known to 4e-5 of it, and the mean of the directions to 1e-4.
+const THINNEST: f32 = 0.02;
+const LOWEST: f32 = 0.01;
 
 /// A shape seen from nearby.
 #[derive(Clone, Copy, Debug)]
@@ -113,11 +133,10 @@ impl Angle {
         }
     }
 
-    /// In `[0, 2 pi)`.
+    /// In `[0, 2 pi]`, for a number of any length.
     #[inline]
     fn radians(self) -> f32 {
-        let angle = libm::atan2f(self.sine, self.cosine);
-        if angle < 0.0 { angle + TAU } else { angle }
+        TAU * turns(self.sine, self.cosine)
     }
 }
 
@@ -130,8 +149,9 @@ pub(super) struct Rectangle {
     y: [f32; 2],
     height: f32,
     lengths: [f32; 2],
-    /// The third components of the normals of the planes through the two long sides.
+    /// The third components of the normals of the planes through the two long sides, and what is left to 1 of the square of the first.
     b: [f32; 2],
+    left: f32,
     /// What the angles on the far side leave.
     rest: Angle,
     solid_angle: f32,
@@ -164,6 +184,7 @@ impl Rectangle {
             height,
             lengths,
             b: [-y0[0], y1[0]],
+            left: y0[1] * y0[1],
             rest: far.negative(),
             solid_angle: near.plus(far).radians(),
         }
@@ -176,7 +197,7 @@ impl Rectangle {
         let f = (angle.cosine * b0 - b1) / angle.sine;
         let [x0, x1] = self.x;
         let [y0, y1] = self.y;
-        let x = self.height.copysign(f) / (f * f + (b0 * b0 - 1.0)).max(0.0).sqrt();
+        let x = self.height.copysign(f) / (f * f - self.left).max(0.0).sqrt();
         // NaN, of angles without a sine, becomes a side.
         let x = x.max(x0).min(x1);
         let squared = x * x + self.height * self.height;
@@ -193,7 +214,7 @@ impl Rectangle {
 }
 
 /// A triangle, as [`SphericalTriangle`](crate::warp::SphericalTriangle) has it; its solid angle by one arc
-/// tangent.[^oosterom]
+/// tangent.[^oosterom] Of formulas that are the same without rounding these keep their digits near the plane.
 ///
 /// [^oosterom]: van Oosterom, Adriaan; Strackee, Jan (1983). *The Solid Angle of a Plane Triangle*.
 ///     <https://doi.org/10.1109/TBME.1983.325207>
@@ -210,49 +231,56 @@ pub(super) struct Triangle {
 
 impl Triangle {
     #[inline]
-    fn new(flat: &Flat, corner: Vec3A) -> Option<Self> {
+    fn new(flat: &Flat, corner: Vec3A, height: f32) -> Self {
         let corners = [corner, corner + flat.first_edge, corner + flat.second_edge];
-        let [a, b, c] = corners.map(Vec3A::normalize);
-        let (ab, ac) = (a.cross(b), a.cross(c));
-        // Positive whichever way round the corners are.
-        let volume = ab.dot(c).abs();
+        let lengths = corners.map(Vec3A::length);
+        let [a, b, c] = core::array::from_fn(|k| corners[k] / lengths[k]);
+        // That of the parallelepiped of the directions: their own product would cancel where they are in one plane nearly.
+        let volume = 2.0 * flat.area * height / (lengths[0] * lengths[1] * lengths[2]);
         let half = Angle {
             cosine: 1.0 + a.dot(b) + b.dot(c) + c.dot(a),
             sine: volume,
         };
-        let (cosine, sine) = (ab.dot(ac), volume);
-        let length = (cosine * cosine + sine * sine).sqrt();
-        let solid_angle = 2.0 * half.radians();
-        // A corner that is where it is seen from has no direction.
-        (length > 0.0 && solid_angle > 0.0).then(|| Self {
+        let cosine = a.cross(b).dot(a.cross(c));
+        let length = (cosine * cosine + volume * volume).sqrt();
+        Self {
             corner,
             directions: [a, b, c],
             alpha: Angle {
                 cosine: cosine / length,
-                sine: sine / length,
+                sine: volume / length,
             },
-            solid_angle,
-        })
+            solid_angle: 2.0 * half.radians(),
+        }
     }
 
     #[inline]
     fn sample(&self, flat: &Flat, [u, v]: [f32; 2]) -> [f32; 2] {
         let [a, b, c] = self.directions;
-        // The corner of the triangle with the share u of the solid angle, on the side from a to c.
-        let angle = Angle::of_turn(u * (self.solid_angle / TAU)).plus(self.alpha.negative());
-        let along = angle.cosine - self.alpha.cosine;
-        let across = angle.sine + self.alpha.sine * a.dot(b);
-        let above = (across * angle.cosine - along * angle.sine) * self.alpha.cosine - across;
-        let below = (across * angle.sine + along * angle.cosine) * self.alpha.sine;
-        // At u = 0 the quotient is 0 / 0: the corner is a itself.
-        let cosine = if below == 0.0 {
-            1.0
-        } else {
-            (above / below).clamp(-1.0, 1.0)
-        };
-        let corner = beside(a, c, cosine);
-        let cosine = 1.0 - v * (1.0 - corner.dot(b));
-        let direction = beside(b, corner, cosine);
+        // The corner of the triangle with the share u of the solid angle, on the side from a to c: the tangents of half the sides and
+        // of half the solid angle tell how far.
+        let half = Angle::of_turn(u * (self.solid_angle / (2.0 * TAU)));
+        let tangent = ((a - b).length_squared() / (a + b).length_squared()).sqrt();
+        let rest = tangent * half.negative().plus(self.alpha).sine;
+        let square = rest * rest + half.sine * half.sine;
+        let corner = beside(
+            a,
+            c,
+            Angle {
+                cosine: (rest - half.sine) * (rest + half.sine) / square,
+                sine: 2.0 * rest * half.sine / square,
+            },
+        );
+        // 1 less the cosine, which would lose it.
+        let less = v * (0.5 * (corner - b).length_squared());
+        let direction = beside(
+            b,
+            corner,
+            Angle {
+                cosine: 1.0 - less,
+                sine: (less * (2.0 - less)).max(0.0).sqrt(),
+            },
+        );
         // Where it meets the plane of the triangle.
         let distance = self.corner.dot(flat.normal) / direction.dot(flat.normal);
         let inside = direction * distance - self.corner;
@@ -263,10 +291,9 @@ impl Triangle {
     }
 }
 
-/// The direction at an angle with this cosine from `axis`, in the plane of `axis` and `toward`.
+/// The direction at an angle from `axis`, in the plane of `axis` and `toward`.
 #[inline]
-fn beside(axis: Vec3A, toward: Vec3A, cosine: f32) -> Vec3A {
+fn beside(axis: Vec3A, toward: Vec3A, angle: Angle) -> Vec3A {
     let across = toward - axis * toward.dot(axis);
-    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-    axis * cosine + across.try_normalize().unwrap_or(Vec3A::ZERO) * sine
+    axis * angle.cosine + across.try_normalize().unwrap_or(Vec3A::ZERO) * angle.sine
 }

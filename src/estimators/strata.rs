@@ -5,8 +5,7 @@ use crate::points::Independent;
 use crate::progressive::at_once;
 use crate::stratum::{Rows, Stratified, Visited, Walk, apportion};
 use crate::{
-    Error, ErrorBar, Estimate, Estimator, Integrand, NonFinite, Outcome, Progressive, Stop, Value,
-    Warning, hash,
+    Error, Estimate, Estimator, Integrand, NonFinite, Outcome, Progressive, Stop, Value, hash,
 };
 
 mod cell;
@@ -284,22 +283,14 @@ impl Progressive for Strata {
         let together = Stratified::new(&phase.visited)?;
         let rejected = pilot.visited.rejected() + main.visited.rejected();
         let used = self.used(state);
-        let mut warnings = together.warnings();
-        warnings.extend(Warning::of_rejected(rejected));
         Some(Estimate {
-            std_error: together.error(),
-            error_bar: ErrorBar::Strata {
-                freedom: together.freedom,
-            },
             requested: self.count,
-            rejected,
             stop: if used < self.count {
                 Stop::Unfinished
             } else {
                 Stop::Count
             },
-            warnings,
-            ..Estimate::new(together.mean, used)
+            ..together.estimate(used, rejected)
         })
     }
 }

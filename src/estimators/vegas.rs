@@ -7,15 +7,19 @@ use crate::integrands::ImportanceMap;
 use crate::stratum::Stratified;
 use crate::warning::Warning;
 use crate::{
-    Error, ErrorBar, Estimate, Estimator, Incomplete, Integrand, Moments, NonFinite, Outcome,
-    Progressive, Stop, Value, hash,
+    Error, ErrorBar, Estimate, Estimator, Incomplete, Integrand, NonFinite, Outcome, Progressive,
+    Stop, Value, hash,
 };
 
 mod adaptation;
 mod grid;
+mod iterations;
 mod learner;
 
 use adaptation::{Adaptation, Pass};
+use iterations::Together;
+
+pub use iterations::Iteration;
 
 /// Adaptive integration of peaked and badly scaled integrands: an [`ImportanceMap`] that learns from iteration to
 /// iteration, and a grid of strata whose numbers of points follow their variances.[^lepage]
@@ -63,29 +67,6 @@ pub struct Vegas {
 
 /// Evaluations of an iteration from which on its variances can be relied on.
 const ENOUGH: u64 = 1000;
-
-/// What one iteration of a [`Vegas`] gave.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct Iteration<V> {
-    /// The estimate of the iteration alone.
-    pub mean: V,
-    /// Its standard error.
-    pub std_error: V,
-    /// Degrees of freedom of the standard error.
-    pub freedom: f64,
-    /// The largest share of one value in the variance.
-    pub share: f64,
-    /// The share of one stratum in the variance if it came from strata of equal shares; 0 unless most strata have none.
-    pub stratum_share: f64,
-    /// How many evaluations it made.
-    pub used: u64,
-    /// How many of the values were not finite and left out.
-    pub rejected: u64,
-    /// Whether it only trained, and is not part of the estimate.
-    pub training: bool,
-}
 
 /// The state of a [`Vegas`]; see [`Progressive`].
 #[derive(Clone, Debug, PartialEq)]
@@ -254,107 +235,38 @@ impl Vegas {
         let trained = state.iterations.partition_point(|one| one.training);
         let (training, main) = state.iterations.split_at(trained);
         let main = if main.is_empty() { training } else { main };
-        let number = main.len();
-        if number == 0 {
+        if main.is_empty() {
             return Some((self.unfinished(state)?, None));
         }
-        // All iterations have nearly the same number of points.
-        let share = 1.0 / number as f64;
-        let mean = main.iter().fold(V::ZERO, |sum, one| {
-            sum.zip(one.mean, |sum, mean| sum + share * mean)
-        });
-        let std_error = main.iter().fold(V::ZERO, |sum, one| {
-            sum.zip(one.std_error, |sum, error| sum.hypot(share * error))
-        });
-        // Each iteration's part in the variance, the largest of the components.
-        let (mut below, mut largest_share) = (0.0, 0.0_f64);
-        for one in main {
-            let mut part = 0.0_f64;
-            let _ = one.std_error.zip(std_error, |own, error| {
-                if error > 0.0 {
-                    part = part.max((share * own / error).powi(2));
-                }
-                own
-            });
-            below += part * part / one.freedom;
-            largest_share = largest_share.max(part * one.share);
-        }
-        let together = Stratified {
-            mean,
-            std_error,
-            freedom: if below > 0.0 {
-                (1.0 / below).min(1e9)
-            } else {
-                1e9
-            },
-            share: largest_share,
-            stratum_share: main.iter().map(|one| one.stratum_share).fold(0.0, f64::max),
-            size: state.adaptation.scale,
-            visited: 1,
-            strata: 1,
-        };
-        // Each component's own; largest of all reported.
-        let per_freedom = 1.0 / (number as f64 - 1.0).max(1.0);
-        let consistency = main.iter().fold(V::ZERO, |sum, one| {
-            one.mean
-                .zip(mean, |x, mean| x - mean)
-                .zip(one.std_error, |off, error| match error {
-                    0.0 => 0.0,
-                    error => (off / error).powi(2),
-                })
-                .zip(sum, |part, sum| sum + part * per_freedom)
-        });
-        let chi_square = (number > 1).then(|| {
-            let mut largest = 0.0_f64;
-            consistency.for_each(|x| largest = largest.max(x));
-            largest
-        });
-        // Three standard deviations of chi-square per degree of freedom: errors that the iterations contradict give way to the
-        // spread of the iterations.
-        let limit = 1.0 + 3.0 * (2.0 * per_freedom).sqrt();
-        let contradicted = chi_square.is_some_and(|chi_square| chi_square > limit);
-        let means: Moments<V> = main.iter().map(|one| one.mean).collect();
-        let spread = means.std_error().unwrap_or(V::ZERO);
-        let spread = consistency.zip(
-            spread,
-            |chi_square, spread| {
-                if chi_square > limit { spread } else { 0.0 }
-            },
-        );
-        let std_error = std_error.zip(spread, f64::max);
-        let freedom = if contradicted {
-            together.freedom.min(number as f64 - 1.0)
-        } else {
-            together.freedom
-        };
+        let together = Together::of(main, state.adaptation.scale);
+        let chi_square = together.chi_square;
         let rejected = self.rejected(state);
-        let mut warnings = together.warnings();
-        if self.count < ENOUGH {
-            let count = self.count;
-            warnings.push(Warning::SmallSample { count });
-        }
-        warnings.extend(Warning::of_rejected(rejected));
-        // Iterations that differ by rounding alone contradict nothing.
-        let rounding = |warning: &Warning| matches!(warning, Warning::Rounding { .. });
-        if let Some(chi_square) = chi_square.filter(|_| contradicted)
-            && !warnings.iter().any(rounding)
-        {
-            warnings.push(Warning::Inconsistent { chi_square });
-        }
-        let estimate = Estimate {
-            std_error: Some(std_error),
-            error_bar: ErrorBar::Strata { freedom },
+        let mut estimate = Estimate {
+            std_error: Some(together.std_error),
+            error_bar: ErrorBar::Strata {
+                freedom: together.freedom,
+            },
             replicates: main.iter().map(|one| one.mean).collect(),
             requested: self.count,
-            rejected,
             stop: if state.iterations.len() < self.iterations as usize {
                 Stop::Unfinished
             } else {
                 Stop::Count
             },
-            warnings,
-            ..Estimate::new(mean, self.used(state))
+            ..together.strata.estimate(self.used(state), rejected)
         };
+        let warnings = &mut estimate.warnings;
+        if self.count < ENOUGH {
+            let count = self.count;
+            warnings.push(Warning::SmallSample { count });
+        }
+        // Iterations that differ by rounding alone contradict nothing.
+        let rounding = |warning: &Warning| matches!(warning, Warning::Rounding { .. });
+        if let Some(chi_square) = together.contradiction()
+            && !warnings.iter().any(rounding)
+        {
+            warnings.push(Warning::Inconsistent { chi_square });
+        }
         Some((estimate, chi_square))
     }
 
@@ -362,22 +274,14 @@ impl Vegas {
     fn unfinished<V: Value>(&self, state: &VegasState<V>) -> Option<Estimate<V>> {
         let together = Stratified::new(&state.open.as_ref()?.visited)?;
         let (used, rejected) = (self.used(state), self.rejected(state));
-        let mut warnings = together.warnings();
+        let mut estimate = together.estimate(used, rejected);
+        estimate.requested = self.count;
+        estimate.stop = Stop::Unfinished;
         if used < ENOUGH {
-            warnings.push(Warning::SmallSample { count: used });
+            let count = used;
+            estimate.warnings.push(Warning::SmallSample { count });
         }
-        warnings.extend(Warning::of_rejected(rejected));
-        Some(Estimate {
-            std_error: together.error(),
-            error_bar: ErrorBar::Strata {
-                freedom: together.freedom,
-            },
-            requested: self.count,
-            rejected,
-            stop: Stop::Unfinished,
-            warnings,
-            ..Estimate::new(together.mean, used)
-        })
+        Some(estimate)
     }
 
     fn rejected<V: Value>(&self, state: &VegasState<V>) -> u64 {

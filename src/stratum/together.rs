@@ -2,7 +2,7 @@
 
 use super::{Stratum, Visited};
 use crate::warning::Warning;
-use crate::{Moments, Value};
+use crate::{ErrorBar, Estimate, Moments, Value};
 
 /// What strata of equal weight say together.
 #[derive(Clone, Copy, Debug)]
@@ -183,6 +183,21 @@ impl<V: Value> Stratified<V> {
     /// The error, if anything is known about it.
     pub(crate) fn error(&self) -> Option<V> {
         (self.freedom > 0.0).then_some(self.std_error)
+    }
+
+    /// The estimate from `used` evaluations, of which `rejected` gave no finite value.
+    pub(crate) fn estimate(&self, used: u64, rejected: u64) -> Estimate<V> {
+        let mut warnings = self.warnings();
+        warnings.extend(Warning::of_rejected(rejected));
+        Estimate {
+            std_error: self.error(),
+            error_bar: ErrorBar::Strata {
+                freedom: self.freedom,
+            },
+            rejected,
+            warnings,
+            ..Estimate::new(self.mean, used)
+        }
     }
 
     /// What the values themselves say against the error.

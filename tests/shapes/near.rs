@@ -163,17 +163,17 @@ fn low_points_and_thin_shapes_are_drawn_by_solid_angle_without_bias() {
     /// Midpoints of a grid of so many cells, whose error is below the bound.
     const SIDE: u32 = 256;
     let [mut near, mut by_area] = [0, 0];
-    for index in 0..320 {
-        let [a, b, c, d, e, f, g, turned] = coordinates(9, index);
-        let width = [1.0, 0.3, 0.1, 0.03, 0.021, 0.01, 1e-3, 1e-4][index as usize % 8];
-        let height = [0.3, 0.1, 0.03, 0.015, 0.011, 3e-3, 1e-3, 1e-4][index as usize / 8 % 8];
+    for index in 0..320_usize {
+        let [a, b, c, d, e, f, g, turned] = coordinates(9, index as u64);
+        let width = [1.0, 0.3, 0.1, 0.03, 0.021, 0.01, 1e-3, 1e-4][index % 8];
+        let height = [0.3, 0.1, 0.03, 0.015, 0.011, 3e-3, 1e-3, 1e-4][index / 8 % 8];
         let turn = DMat3::from_euler(EulerRot::XYZ, 6.3 * a, 6.3 * b, 6.3 * c);
         let [x, y] = [turn.x_axis, turn.y_axis * width].map(|edge| edge.as_vec3());
         let corner = DVec3::new(d, e, f).as_vec3();
         let triangle = [corner, corner + x, corner + (x * single(g) + y)];
         // Three corners, or four of a rectangle.
         let (flat, corners) = if turned < 0.7 {
-            let first = index as usize / 64 % 3;
+            let first = index / 64 % 3;
             let corners = [0, 1, 2].map(|k| triangle[(k + first) % 3]);
             let flat = Flat::triangle(corners.map(|corner| corner.to_array())).unwrap();
             (flat, corners.to_vec())

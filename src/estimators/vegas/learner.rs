@@ -81,42 +81,12 @@ impl<'a, I: Integrand> Learner<'a, I> {
     }
 
     /// What the point `place` weighs if its integrand read so many coordinates.
-    #[cold]
     fn weight(&self, place: usize, read: usize) -> f64 {
         let bins = self.bins.chunks_exact(self.number);
         let hits = &self.hits[place * self.place.len()..][..read];
         bins.zip(hits)
-            .map(|(bins, &hit)| bins[hit as usize].jacobian)
+            .map(|(bins, &hit)| bins.get(hit as usize).map_or(1.0, |bin| bin.jacobian))
             .product()
-    }
-
-    /// Moves rows of a known number of coordinates into the stratum.
-    #[inline(always)]
-    fn place_rows<const AXES: usize>(&mut self, first: usize, rows: &mut [f64]) {
-        let axes = if AXES > 0 { AXES } else { self.place.len() };
-        let Some(place) = self.place.get(..axes) else {
-            return;
-        };
-        // Signed, as the machine converts them.
-        let last = i32::try_from(self.number - 1).unwrap_or(i32::MAX);
-        let hits = self.hits[first * axes..].chunks_exact_mut(axes);
-        let points = rows
-            .chunks_exact_mut(axes)
-            .zip(hits)
-            .zip(&mut self.jacobians[first..]);
-        for ((row, hits), jacobian) in points {
-            *jacobian = 1.0;
-            let bins = self.bins.chunks_exact(self.number);
-            for ((x, hit), (axis, bins)) in row.iter_mut().zip(hits).zip(place.iter().zip(bins)) {
-                let scaled = (axis.cell + *x) * axis.scale;
-                #[expect(clippy::cast_possible_truncation, reason = "below the number of bins")]
-                let number = (scaled as i32).min(last);
-                *hit = number.cast_unsigned();
-                let bin = bins[*hit as usize];
-                *x = bin.image(scaled - f64::from(number));
-                *jacobian *= bin.jacobian;
-            }
-        }
     }
 }
 
@@ -136,14 +106,26 @@ impl<I: Integrand> Visitor for Learner<'_, I> {
 
     #[inline]
     fn place(&mut self, first: usize, rows: &mut [f64]) {
-        // Unrolled for the usual numbers of axes.
-        match self.place.len() {
-            0 => {}
-            2 => self.place_rows::<2>(first, rows),
-            3 => self.place_rows::<3>(first, rows),
-            4 => self.place_rows::<4>(first, rows),
-            5 => self.place_rows::<5>(first, rows),
-            _ => self.place_rows::<0>(first, rows),
+        let axes = self.place.len();
+        if axes == 0 {
+            return;
+        }
+        // Signed, as the machine converts them.
+        let last = i32::try_from(self.number - 1).unwrap_or(i32::MAX);
+        let rows = rows.chunks_exact_mut(axes);
+        let hits = self.hits[first * axes..].chunks_exact_mut(axes);
+        for ((row, hits), jacobian) in rows.zip(hits).zip(&mut self.jacobians[first..]) {
+            let bins = self.bins.chunks_exact(self.number);
+            let place = self.place.iter().zip(bins);
+            for ((x, hit), (axis, bins)) in row.iter_mut().zip(hits).zip(place) {
+                let scaled = (axis.cell + *x) * axis.scale;
+                #[expect(clippy::cast_possible_truncation, reason = "below the number of bins")]
+                let number = (scaled as i32).min(last);
+                *hit = number.cast_unsigned();
+                let bin = bins[*hit as usize];
+                *x = bin.image(scaled - f64::from(number));
+                *jacobian *= bin.jacobian;
+            }
         }
     }
 

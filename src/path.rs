@@ -57,6 +57,7 @@ pub mod image;
 #[cfg(feature = "simd")]
 mod lanes;
 pub mod light;
+mod object;
 #[cfg(feature = "simd")]
 mod packet;
 mod pictures;
@@ -77,12 +78,13 @@ pub mod texture;
 pub use adaptive::{Adapted, Adaptive};
 pub use frame::Frame;
 pub use image::Image;
+pub use object::{Instances, Object};
 pub use pictures::Pictures;
 pub use place::{Place, Spot};
 pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
 pub use recursive::{Direct, Ending, Recursive, RecursivePixel};
 pub use render::{Pixel, Unfinished, View};
-pub use scene::{Instances, Object, Scene, Vertex};
+pub use scene::{Scene, Vertex};
 pub use segment::Segment;
 pub use shading::{Detail, Facet, Shading};

@@ -1,148 +1,24 @@
 //! What is rendered.
 
+mod parts;
+
 use std::sync::Arc;
 
-use glam::{Affine2, Affine3A, Mat2, Vec3A};
-
 use super::bsdf::{Bsdf, Material};
-use super::color;
-use super::geometry::{Copied, FEW, Geometry, Hit, around};
-use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment, Picture};
+use super::geometry::{Copied, Geometry, Hit};
+use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment};
+use super::object::{Instances, Object, Radiance};
 #[cfg(feature = "simd")]
 use super::packet::{Emitted, Optics, Packet};
 use super::ray::{Ray, Surface};
 use super::resolution::{check_object, check_scene};
 use super::segment::{End, Segment};
-use super::shape::{Mesh, Primitive, Shape};
-use super::texture::{self, Parameter, Texture};
 use super::{Detail, Shading};
 use crate::Error;
 
-/// Shapes that scatter light alike, and perhaps emit it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Object<B> {
-    shapes: Vec<Primitive>,
-    meshes: Vec<Mesh>,
-    bsdf: B,
-    radiance: Radiance,
-}
-
-/// What an object emits.
-#[derive(Clone, Debug, PartialEq)]
-enum Radiance {
-    Nothing,
-    Uniform(Vec3A),
-    Picture(Texture),
-}
-
-impl Radiance {
-    /// The shape that emits it, given the way from the shape's texture coordinates to those of a picture.
-    fn emitter(&self, shape: Primitive, place: Affine2) -> Emitter {
-        let (radiance, picture) = match self {
-            Self::Nothing => (Vec3A::ZERO, None),
-            Self::Uniform(radiance) => (*radiance, None),
-            Self::Picture(texture) => {
-                let texture = texture.clone();
-                (
-                    Vec3A::splat(texture.mean()),
-                    Some(Picture { texture, place }),
-                )
-            }
-        };
-        Emitter {
-            shape,
-            radiance,
-            picture,
-        }
-    }
-
-    /// The triangles of a mesh that emit it.
-    fn emitters(&self, mesh: &Mesh) -> impl Iterator<Item = Emitter> {
-        (0..mesh.triangles().len()).map(|triangle| {
-            let [a, b, c] = mesh.uvs(triangle);
-            let place = Affine2::from_mat2_translation(Mat2::from_cols(b - a, c - a), a);
-            self.emitter(mesh.flat(triangle).into(), place)
-        })
-    }
-}
-
-impl<B> Object<B> {
-    /// Shapes that scatter light as `bsdf` says.
-    pub fn new(shapes: impl IntoIterator<Item = impl Into<Primitive>>, bsdf: impl Into<B>) -> Self {
-        Self {
-            shapes: shapes.into_iter().map(Into::into).collect(),
-            meshes: Vec::new(),
-            bsdf: bsdf.into(),
-            radiance: Radiance::Nothing,
-        }
-    }
-
-    /// A mesh that scatters light as `bsdf` says.
-    pub fn mesh(mesh: Mesh, bsdf: impl Into<B>) -> Self {
-        Self {
-            meshes: vec![mesh],
-            ..Self::new([] as [Primitive; 0], bsdf)
-        }
-    }
-
-    /// The same with the triangles of its meshes as shapes of their own. Meshes that know of normals or texture coordinates stay
-    /// whole, since single triangles do not.
-    fn take_apart(&mut self) {
-        if !self.meshes.iter().all(Mesh::is_plain) {
-            return;
-        }
-        for mesh in self.meshes.drain(..) {
-            let triangles = (0..mesh.triangles().len()).map(|triangle| mesh.flat(triangle));
-            self.shapes.extend(triangles.map(Primitive::from));
-        }
-    }
-
-    /// The corners of a box around everything.
-    fn bounds(&self) -> [Vec3A; 2] {
-        let shapes = self.shapes.iter().map(Shape::bounds);
-        around(shapes.chain(self.meshes.iter().map(Mesh::bounds)))
-    }
-
-    /// The same, emitting light from the outer sides: `radiance` in linear red, green and blue.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Refused`] for a component that is negative or not finite.
-    pub fn emitting(mut self, radiance: [f32; 3]) -> Result<Self, Error> {
-        let radiance = color::radiance(radiance)?;
-        self.radiance = if radiance == Vec3A::ZERO {
-            Radiance::Nothing
-        } else {
-            Radiance::Uniform(radiance)
-        };
-        Ok(self)
-    }
-
-    /// The same, emitting light that varies over its shapes: `radiance` at their texture coordinates.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Refused`] for a texture with a component that is negative or not finite.
-    pub fn emitting_picture(mut self, radiance: Texture) -> Result<Self, Error> {
-        self.radiance = match texture::finite("radiance", radiance)? {
-            Texture::Uniform(uniform) => {
-                return self.emitting(uniform.color(&()).to_array());
-            }
-            picture if picture.range()[1] > 0.0 => Radiance::Picture(picture),
-            _ => Radiance::Nothing,
-        };
-        Ok(self)
-    }
-}
-
-/// Objects that stand in a scene several times over, each time moved, turned and scaled as a whole.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Instances<B> {
-    /// What is copied. Nothing of it may emit light.
-    pub objects: Vec<Object<B>>,
-    /// From the coordinates of the objects to those of the scene, for each copy.
-    pub places: Vec<Affine3A>,
-}
+#[cfg(feature = "simd")]
+use parts::DARK;
+use parts::{Owner, Parts, are_few};
 
 /// A scene: shapes, how they scatter light (`B`), which of them emit it (`L`) and what is around them (`E`).
 ///
@@ -170,31 +46,6 @@ pub struct Scene<B = Material, L = AreaLights, E = NoEnvironment> {
     #[cfg(feature = "simd")]
     packet: Option<Box<Packet>>,
 }
-
-/// What belongs to a shape or a mesh.
-#[derive(Clone, Copy, Debug)]
-struct Owner {
-    bsdf: u32,
-    /// The emitter that it is; of a mesh the one that its first triangle is, and the others follow.
-    emitter: u32,
-    /// How many triangles of meshes there are before it.
-    triangles: usize,
-}
-
-impl Owner {
-    /// The emitter that was hit, if it is one, and which of all triangles it is, if it is one.
-    #[inline]
-    fn emitter(self, triangle: usize) -> Option<u32> {
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "emitters have numbers below 2^32"
-        )]
-        (self.emitter != DARK).then(|| self.emitter + (triangle - self.triangles) as u32)
-    }
-}
-
-/// The `emitter` of a shape that emits nothing.
-const DARK: u32 = u32::MAX;
 
 /// The point of a scene that a ray has met.
 #[derive(Clone, Copy, Debug)]
@@ -269,19 +120,12 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
                 copies.push(copy);
             }
         }
-        let mut emitters = core::mem::take(&mut parts.emitters);
-        let flat = |shape: &Primitive| matches!(shape, Primitive::Flat(_));
         // Many paths at once draw from the area: that costs more samples, but each takes less than half the time.
-        let at_once = shapes.len() <= FEW
-            && shapes.iter().all(flat)
+        let at_once = parts.are_plain(&shapes)
             && meshes.is_empty()
             && copies.is_empty()
-            && parts
-                .bsdfs
-                .iter()
-                .all(|bsdf| bsdf.as_lambertian().is_some())
-            && emitters.iter().all(|emitter| emitter.picture.is_none())
             && environment.constant().is_some();
+        let mut emitters = parts.emitters;
         if !at_once {
             emitters.iter_mut().for_each(Emitter::by_solid_angle);
         }
@@ -301,7 +145,7 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
             packet: None,
         };
         #[cfg(feature = "simd")]
-        {
+        if at_once {
             scene.packet = scene.packed().map(Box::new);
         }
         Ok(scene)
@@ -331,85 +175,6 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
             })
         };
         Packet::new(&self.geometry, optics, lights, sky)
-    }
-}
-
-/// Whether there are so few shapes and triangles that looking at all of them is best.
-fn are_few<B>(objects: &[Object<B>]) -> bool {
-    let count = |object: &Object<B>| {
-        let triangles = object.meshes.iter().map(|mesh| mesh.triangles().len());
-        object.shapes.len() + triangles.sum::<usize>()
-    };
-    objects.iter().map(count).sum::<usize>() <= FEW
-}
-
-/// What the objects of a scene are made of.
-struct Parts<B> {
-    owners: Vec<Owner>,
-    bsdfs: Vec<B>,
-    emitters: Vec<Emitter>,
-}
-
-impl<B> Default for Parts<B> {
-    fn default() -> Self {
-        Self {
-            owners: Vec::new(),
-            bsdfs: Vec::new(),
-            emitters: Vec::new(),
-        }
-    }
-}
-
-impl<B> Parts<B> {
-    /// The shapes and the meshes of some objects, after their owners were added in this order.
-    fn add(&mut self, objects: Vec<Object<B>>) -> Result<(Vec<Primitive>, Vec<Mesh>), Error> {
-        let (mut shapes, mut meshes, mut owners_of_meshes) = (Vec::new(), Vec::new(), Vec::new());
-        let mut triangles = 0;
-        for mut object in objects {
-            check_object(object.bounds())?;
-            let bsdf = index(self.bsdfs.len())?;
-            self.bsdfs.push(object.bsdf);
-            let shines = object.radiance != Radiance::Nothing;
-            for &shape in &object.shapes {
-                let mut owner = Owner {
-                    bsdf,
-                    emitter: DARK,
-                    triangles: 0,
-                };
-                if shines {
-                    owner.emitter = index(self.emitters.len())?;
-                    let emitter = object.radiance.emitter(shape, Affine2::IDENTITY);
-                    self.emitters.push(emitter);
-                }
-                self.owners.push(owner);
-            }
-            for mesh in &object.meshes {
-                let mut owner = Owner {
-                    bsdf,
-                    emitter: DARK,
-                    triangles,
-                };
-                triangles += mesh.triangles().len();
-                if shines {
-                    owner.emitter = index(self.emitters.len())?;
-                    index(self.emitters.len() + mesh.triangles().len())?;
-                    self.emitters.extend(object.radiance.emitters(mesh));
-                }
-                owners_of_meshes.push(owner);
-            }
-            shapes.append(&mut object.shapes);
-            meshes.append(&mut object.meshes);
-        }
-        self.owners.append(&mut owners_of_meshes);
-        Ok((shapes, meshes))
-    }
-}
-
-/// An index below 2^32 - 1, which stands for none.
-fn index(index: usize) -> Result<u32, Error> {
-    match u32::try_from(index) {
-        Ok(index) if index != DARK => Ok(index),
-        _ => Err(Error::refused("number of shapes", "below 2^32", index)),
     }
 }
 

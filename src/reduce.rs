@@ -50,7 +50,7 @@ pub(crate) fn in_order<T: Send, E: Send>(
 ///
 /// # Panics
 ///
-/// If `count` values do not fit into memory.
+/// If `count` values do not fit into memory, of which each takes up to 24 bytes more while they are computed.
 pub fn each<T: Send>(count: u64, job: impl Fn(u64) -> T + Sync) -> Vec<T> {
     wave(0..count, &job)
 }

@@ -67,7 +67,7 @@ pub type Outcome<V> = Result<Estimate<<V as Value>::Wide>, Incomplete<<V as Valu
 /// What to do with a value of an integrand that is NaN or infinite.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NonFinite {
-    /// Stop with an error that names the point and carries the estimate so far.
+    /// Stop with an error that names the point and carries the estimate so far. Points after it may have been evaluated.
     #[default]
     Fail,
     /// Leave the value out, count it in [`Estimate::rejected`], and go on.

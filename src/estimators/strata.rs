@@ -23,7 +23,7 @@ use rounds::Rounds;
 ///
 /// Points come in rounds: two in each cell, cells in a random order, then four times as many, up to the number that the cell
 /// is due. So an estimate that is stopped early is one of all cells with fewer points, or, before the first round is complete,
-/// one of a random sample of the cells, with [`Warning::Unvisited`].
+/// one of a random sample of the cells, with [`Warning::Unvisited`](crate::Warning::Unvisited).
 ///
 /// A cell has at least two points. So there can be at most half as many cells as points; for one point a cell take
 /// [`Replicated`](crate::Replicated) with [`points::Stratified`](crate::points::Stratified).

@@ -31,6 +31,7 @@
 //! | [`shape`], [`bsdf`], [`light`], [`sensor`], [`filter`] | one kind of shape, scattering, source, camera and filter a file |
 //! | [`Paths::radiance`] | the rendering equation |
 //! | [`Recursive`] | the same as it is taught, to be compared with |
+//! | [`View::learn_roulette`] | paths that end where it pays |
 //! | [`Adaptive`] | more samples where the picture needs them |
 //! | [`Image`] | pictures, their errors, their files |
 //! | [`scenes`] | the Cornell box and others, as `reference/scenes` has them for Mitsuba |
@@ -67,6 +68,7 @@ mod ray;
 mod recursive;
 mod render;
 mod resolution;
+pub(crate) mod roulette;
 mod scene;
 pub mod scenes;
 mod segment;

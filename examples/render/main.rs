@@ -16,6 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use clap::Parser;
+use estimand::hash;
 use estimand::mitsuba::{self, Instance};
 use estimand::path::Image;
 
@@ -71,6 +72,9 @@ struct Arguments {
     /// once: Ctrl-C ends it with nothing written
     #[arg(long, conflicts_with_all = ["time", "noise", "points", "replicates", "checkpoint"])]
     adaptive: bool,
+    /// Ends paths by Russian roulette as a pilot of so many paths a pixel, in at most 128 x 128 pixels and twice over, shows that it pays
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..))]
+    learn_roulette: Option<u64>,
     /// Loads the scene as the type that can render every scene, instead of the smallest that is enough
     #[arg(long)]
     general: bool,
@@ -84,6 +88,9 @@ struct Arguments {
 
 /// The exit code after Ctrl-C, as shells have it.
 const INTERRUPTED: u8 = 130;
+
+/// Tells the seed of the pilot from that of the picture.
+const PILOT: u64 = 0x0070_696c_6f74;
 
 /// Set by Ctrl-C.
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -122,7 +129,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         true => Instance::General,
         false => Instance::Smallest,
     };
-    let loaded = description.load(instance)?;
+    let mut loaded = description.load(instance)?;
     let load_seconds = start.elapsed().as_secs_f64();
     if let Some(reference) = &reference {
         let size = [reference.width(), reference.height()];
@@ -135,14 +142,22 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         }
     }
 
+    let start = Instant::now();
+    if let Some(count) = arguments.learn_roulette {
+        // Paths of its own, not those of the picture.
+        let seed = hash::hash(arguments.seed, PILOT);
+        loaded.picture.learn_roulette(loaded.size, count, seed)?;
+    }
+    let pilot_seconds = start.elapsed().as_secs_f64();
+
     let of_the_file = description.sensors[0].sampler.sample_count.into();
     let plan = Plan::new(arguments, of_the_file);
     let checkpoint = arguments.checkpoint.as_deref().map(|file| {
         Checkpoint::new(
             file,
             &format!(
-                "{description:?} {plan:?} {} {}",
-                arguments.points, arguments.seed
+                "{description:?} {plan:?} {} {} {:?}",
+                arguments.points, arguments.seed, arguments.learn_roulette
             ),
         )
     });
@@ -170,6 +185,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             reference: reference.as_ref(),
             left_out: &loaded.left_out,
             load_seconds,
+            pilot_seconds,
         },
     )
 }

@@ -17,6 +17,8 @@ pub(crate) struct Report<'a> {
     pub(crate) reference: Option<&'a Image>,
     pub(crate) left_out: &'a [String],
     pub(crate) load_seconds: f64,
+    /// How long the pilot of the roulette took.
+    pub(crate) pilot_seconds: f64,
 }
 
 /// A picture and what it took.
@@ -116,6 +118,7 @@ fn figures(
         "paths": work.paths,
         "seconds": work.seconds,
         "load_seconds": report.load_seconds,
+        "pilot_seconds": report.pilot_seconds,
         "paths_per_second": work.paths as f64 / work.seconds,
         "points": job.points.to_string(),
         "left_out": report.left_out,

@@ -8,10 +8,11 @@ use glam::DVec3;
 use crate::path::bsdf::Bsdf;
 use crate::path::filter::Filter;
 use crate::path::light::{Environment, Light};
+use crate::path::roulette::Steps;
 use crate::path::sensor::Sensor;
 use crate::path::{Adapted, Adaptive, Pixel, Unfinished, View};
 use crate::points::PointSet;
-use crate::{Average, Estimate, Estimator, Incomplete, Integrand, NonFinite, Sampler};
+use crate::{Average, Error, Estimate, Estimator, Incomplete, NonFinite, Sampler};
 
 /// A [`View`] of any types, behind a pointer.
 pub trait Picture: Sync + fmt::Debug {
@@ -40,6 +41,13 @@ pub trait Picture: Sync + fmt::Debug {
         seed: u64,
         adaptive: Adaptive,
     ) -> Result<Adapted, Unfinished>;
+
+    /// Ends paths by Russian roulette as it pays in this picture: see [`View::learn_roulette`].
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] as there.
+    fn learn_roulette(&mut self, size: [u32; 2], count: u64, seed: u64) -> Result<(), Error>;
 
     /// How many coordinates the sample of a pixel at one of the points takes.
     fn coordinates(
@@ -80,6 +88,11 @@ where
         self.render_adaptive(size, seed, adaptive)
     }
 
+    fn learn_roulette(&mut self, size: [u32; 2], count: u64, seed: u64) -> Result<(), Error> {
+        self.paths = Self::learn_roulette(self, size, count, seed)?;
+        Ok(())
+    }
+
     fn coordinates(
         &self,
         position: [u32; 2],
@@ -93,7 +106,7 @@ where
             index,
             drawn: &drawn,
         };
-        pixel(self, position, size).evaluate(&mut counting);
+        pixel(self, position, size).follow(&mut counting, &mut Steps::default());
         u64::from(drawn.get())
     }
 }

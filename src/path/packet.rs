@@ -167,6 +167,9 @@ mod tests {
         }
         view.paths = Paths::default().roulette_from(1);
         agree(&view);
+        view.paths = view.learn_roulette([16, 16], 4, 1).unwrap();
+        assert!(view.paths != Paths::default());
+        agree(&view);
     }
 
     /// A room of triangles, turned, below a sky, with lights of both kinds.

@@ -5,17 +5,17 @@ use glam::{Vec3, Vec3A};
 use super::Ray;
 use super::bsdf::Bsdf;
 use super::light::{Environment, Light};
+use super::roulette::{Rule, Witness};
 use super::scene::Scene;
-use crate::integrands::Survival;
 use crate::{Error, Sampler};
 
 /// Which paths of light are followed.
 ///
 /// By default all: paths end by Russian roulette, without bias, from their fifth segment on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Paths {
     pub(in crate::path) longest: u32,
-    pub(in crate::path) roulette_from: u32,
+    pub(in crate::path) roulette: Rule,
     pub(in crate::path) hides_lights: bool,
 }
 
@@ -23,7 +23,7 @@ impl Default for Paths {
     fn default() -> Self {
         Self {
             longest: u32::MAX,
-            roulette_from: 5,
+            roulette: Rule::of_throughput(5),
             hides_lights: false,
         }
     }
@@ -49,7 +49,7 @@ impl Paths {
     /// component of what the path still carries, and 0.95 at most; what refraction takes from it or
     /// adds to it does not count, since the way out of the glass gives it back.
     pub fn roulette_from(mut self, segment: u32) -> Self {
-        self.roulette_from = segment;
+        self.roulette = Rule::of_throughput(segment);
         self
     }
 
@@ -65,15 +65,27 @@ impl Paths {
     ///
     /// The coordinates are read in this order. At every surface: those of the [lights](Light) and those of the
     /// [environment](Environment), unless the surface scatters to single directions only; for the next direction as
-    /// many as the law of scattering draws; from the fifth segment on one for Russian roulette.
+    /// many as the law of scattering draws; by default from the fifth segment on one for Russian roulette.
     ///
     /// [^kajiya]: Kajiya, James (1986). *The Rendering Equation*. <https://doi.org/10.1145/15886.15902>
     #[inline]
     pub fn radiance<B: Bsdf, L: Light, E: Environment, S: Sampler>(
         &self,
         scene: &Scene<B, L, E>,
+        ray: Ray,
+        u: &mut S,
+    ) -> Vec3 {
+        self.witnessed(scene, ray, u, &mut ())
+    }
+
+    /// The same, with somebody who looks on.
+    #[inline]
+    pub(in crate::path) fn witnessed<B: Bsdf, L: Light, E: Environment, S: Sampler>(
+        &self,
+        scene: &Scene<B, L, E>,
         mut ray: Ray,
         u: &mut S,
+        witness: &mut impl Witness,
     ) -> Vec3 {
         let mut radiance = Vec3A::ZERO;
         if self.hides_lights {
@@ -121,12 +133,16 @@ impl Paths {
             };
             throughput *= next.weight;
             eta *= next.eta;
-            if segment >= self.roulette_from {
-                let Some(weight) = play(throughput.max_element() * (eta * eta), u) else {
+            let carried = throughput.max_element() * (eta * eta);
+            let mut weight = 1.0;
+            if segment >= self.roulette.from {
+                let Some(survivor) = self.roulette.play(segment, carried, u) else {
                     break;
                 };
+                weight = survivor;
                 throughput *= weight;
             }
+            witness.goes_on(segment, carried, weight, radiance);
             density = next.density;
             ray = Ray {
                 origin: surface.leave(next.direction),
@@ -135,19 +151,6 @@ impl Paths {
         }
         radiance.into()
     }
-}
-
-/// Russian roulette: the weight of a path that goes on, `None` for one that ends, from what the path still carries.
-#[inline]
-pub(in crate::path) fn play<S: Sampler>(carried: f32, u: &mut S) -> Option<f32> {
-    // A black path is common, and an error for each would be slow. NaN goes on, to be seen.
-    if carried <= 0.0 {
-        return None;
-    }
-    let survival = Survival::new(f64::from(carried).min(0.95)).ok()?;
-    let weight = survival.play(u.next_1d())?;
-    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-    Some(weight as f32)
 }
 
 /// The weight of a sample that was drawn with density `own`, where another technique has the density `other`: the

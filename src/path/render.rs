@@ -11,6 +11,7 @@ use super::image::{Image, Row};
 use super::light::{Environment, Light};
 #[cfg(feature = "simd")]
 use super::packet::Packet;
+use super::roulette::Steps;
 use super::sensor::Sensor;
 use super::{Paths, Ray, Scene};
 use crate::points::pixel;
@@ -51,6 +52,13 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Pixel<'_, B, L, E,
             ray: self.sensor.ray(film, u),
             weight: seen.weight,
         }
+    }
+
+    /// The radiance of a path that somebody looks at, and what it counts.
+    #[inline(never)]
+    pub(crate) fn follow(&self, mut u: &mut dyn Sampler, steps: &mut Steps) -> (Vec3, f32) {
+        let Start { ray, weight } = self.start(&mut u);
+        (self.paths.witnessed(self.scene, ray, &mut u, steps), weight)
     }
 }
 

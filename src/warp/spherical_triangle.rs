@@ -43,7 +43,8 @@ impl SphericalTriangle {
         let angle = |n: Vector, m: Vector| length(cross(n, m)).atan2(-dot(n, m));
         let (alpha, beta, gamma) = (angle(ab, ca), angle(ab, bc), angle(bc, ca));
         let solid_angle = alpha + beta + gamma - PI;
-        if solid_angle.is_nan() || solid_angle <= 0.0 {
+        // To rounding none, or all of one side: the point is in the plane of the triangle.
+        if !(1e-15..2.0 * PI - 1e-14).contains(&solid_angle) {
             return Err(Error::refused(
                 "spherical triangle",
                 "a triangle with a solid angle",

@@ -225,7 +225,7 @@ fn low_points_and_thin_shapes_are_drawn_by_solid_angle_without_bias() {
     assert!(near > 80 && by_area > 80, "{near} near, {by_area} not");
 }
 
-/// The nearer, the larger the part of all directions; in the plane itself there is still a density, from the area.
+/// However near to the plane, points are finite and have a density, from the area where `f32` has too few digits for the solid angle.
 #[test]
 fn points_next_to_a_shape_have_a_density() {
     let square = Flat::parallelogram([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
@@ -239,7 +239,7 @@ fn points_next_to_a_shape_have_a_density() {
                 let (point, density) = flat.sample_with_density(from, u);
                 assert!(point.point.is_finite(), "{point:?} from {from}");
                 assert!(
-                    density > 0.0 && density <= f32::MAX,
+                    density > 0.0 && density.is_finite(),
                     "{density} from {height}"
                 );
             }

@@ -85,6 +85,7 @@ impl<'a, I: Integrand> Learner<'a, I> {
         let bins = self.bins.chunks_exact(self.number);
         let hits = &self.hits[place * self.place.len()..][..read];
         bins.zip(hits)
+            // An axis that was not read has no bin.
             .map(|(bins, &hit)| bins.get(hit as usize).map_or(1.0, |bin| bin.jacobian))
             .product()
     }

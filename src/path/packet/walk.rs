@@ -9,7 +9,6 @@ use super::{Packet, Start};
 use crate::Sampler;
 use crate::path::frame::single;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
-use crate::path::radiance::play;
 use crate::path::{Paths, gamma};
 
 /// The paths of some points.
@@ -224,7 +223,7 @@ impl<U: Sampler> Walk<'_, U> {
         let local = cosine_hemisphere(c, d);
         walking = walking & local.z.gt(zero);
         throughput *= albedo;
-        let playing = walking & segment.ge(Real::splat(simd, self.paths.roulette_from as f32));
+        let playing = walking & segment.ge(Real::splat(simd, self.paths.roulette.from as f32));
         if playing.any() {
             let weight = self.play(simd, state, playing, throughput.max_element());
             walking = walking & (!playing | weight.gt(zero));
@@ -294,7 +293,14 @@ impl<U: Sampler> Walk<'_, U> {
         for lane in 0..S::F32_LANES {
             if plays.0[lane] > 0.0 {
                 let u = &mut self.points[state.point[lane]];
-                weights.0[lane] = play(weights.0[lane], u).unwrap_or(0.0);
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "a count"
+                )]
+                let segment = state.segment.0[lane] as u32;
+                let survivor = self.paths.roulette.play(segment, weights.0[lane], u);
+                weights.0[lane] = survivor.unwrap_or(0.0);
             }
         }
         Real::load(simd, &weights)

@@ -178,10 +178,10 @@ impl Flat {
     /// The same points, [drawn](Shape::sample) uniformly from the solid angle for what is near: for points on the outer side from which
     /// a small shape of this area in the middle would fill 0.2 steradians or more; straight above a square those closer than about
     /// twice its side. For others it makes no difference worth the time, and they go on drawing from the area. So do
-    /// points closer than a hundredth of the longest edge, and all points in front of shapes thinner than a fiftieth of it, where `f32` has
+    /// points closer to its plane than a hundredth of the longest edge, and all points in front of shapes thinner than a fiftieth of it, where `f32` has
     /// too few digits, and of parallelograms that are no rectangles.
     ///
-    /// The scene does this to its lights, unless it is one that is traced many paths at once.
+    /// The scene does this to its lights, unless it is one whose shapes could be traced many paths at once.
     ///
     /// ```
     /// use estimand::path::shape::{Flat, Shape};

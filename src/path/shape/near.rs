@@ -71,7 +71,7 @@ impl Outline {
 const SMALLEST: f32 = 0.2;
 
 /// The width and the height above the shape, over its longest edge, from which on it is drawn by solid angle. There the solid angle is
-/// known to 4e-5 of it, and the mean of the directions to 1e-4.
+/// known to 1e-4 of it, and so is the mean of the directions.
 const THINNEST: f32 = 0.02;
 const LOWEST: f32 = 0.01;
 

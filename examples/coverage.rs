@@ -12,18 +12,20 @@ mod methods;
 #[path = "common/stiff.rs"]
 #[allow(dead_code, reason = "shared with the other programs")]
 mod stiff;
+#[path = "common/target.rs"]
+mod target;
 #[path = "common/trial.rs"]
 #[allow(dead_code, reason = "shared with the other programs")]
 mod trial;
 
 use std::fmt::Write;
-use std::fs;
 use std::process::ExitCode;
 
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressDrawTarget};
 
 use cases::{Plan, Row};
+use target::Target;
 
 /// Measures how often the 95 % intervals of every method hold the integral.
 #[derive(Parser)]
@@ -38,11 +40,11 @@ struct Arguments {
     #[arg(long, default_value = "")]
     only: String,
     /// Write the table to this file instead of standard output
-    #[arg(long, value_name = "FILE")]
-    markdown: Option<String>,
+    #[arg(long, value_name = "FILE", value_parser = Target::new)]
+    markdown: Option<Target>,
     /// Also write the rows as JSON, to standard output for `-`
-    #[arg(long, value_name = "FILE")]
-    json: Option<String>,
+    #[arg(long, value_name = "FILE", value_parser = Target::new)]
+    json: Option<Target>,
 }
 
 fn main() -> ExitCode {
@@ -70,19 +72,19 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
     };
     let (genz, stiff) = (plan.genz()?, plan.stiff()?);
     bar.finish_and_clear();
+    if genz.is_empty() && stiff.is_empty() {
+        return Err(format!("no row contains {}", arguments.only).into());
+    }
     let table = table(arguments, &genz, &stiff)?;
+    let only_json = arguments.json.as_ref().is_some_and(Target::is_standard);
     match &arguments.markdown {
-        Some(file) => fs::write(file, table)?,
-        None if arguments.json.as_deref() == Some("-") => {}
+        Some(target) => target.write(table.trim_end())?,
+        None if only_json => {}
         None => print!("{table}"),
     }
-    if let Some(file) = &arguments.json {
+    if let Some(target) = &arguments.json {
         let rows: Vec<_> = genz.iter().chain(&stiff).map(json).collect();
-        let text = serde_json::to_string_pretty(&rows)?;
-        match file.as_str() {
-            "-" => println!("{text}"),
-            file => fs::write(file, text)?,
-        }
+        target.write(&serde_json::to_string_pretty(&rows)?)?;
     }
     Ok(())
 }

@@ -6,8 +6,9 @@
 mod integrands;
 #[path = "common/sets.rs"]
 mod sets;
+#[path = "common/target.rs"]
+mod target;
 
-use std::fs;
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -22,6 +23,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use integrands::{Family, Problem};
 use sets::{Choice, Scramble, Set};
+use target::Target;
 
 /// Integrates a test integrand over the unit cube and says how far the result can be trusted.
 #[derive(Parser)]
@@ -74,8 +76,8 @@ struct Arguments {
     #[arg(long)]
     width: Option<f64>,
     /// Write the result as JSON to a file, or to standard output for `-`
-    #[arg(long, value_name = "FILE")]
-    json: Option<String>,
+    #[arg(long, value_name = "FILE", value_parser = Target::new)]
+    json: Option<Target>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -232,13 +234,11 @@ fn report(
         "stopped": estimate.stop.to_string(),
         "warnings": warnings,
     });
-    match arguments.json.as_deref() {
-        Some("-") => {
-            println!("{json}");
+    if let Some(target) = &arguments.json {
+        target.write(&json.to_string())?;
+        if target.is_standard() {
             return Ok(());
         }
-        Some(file) => fs::write(file, format!("{json}\n"))?,
-        None => {}
     }
     println!("mean         {:.12e}", estimate.mean);
     if let Some(error) = estimate.std_error {

@@ -6,9 +6,10 @@
 
 #[path = "common/integrands.rs"]
 mod integrands;
+#[path = "common/target.rs"]
+mod target;
 
 use std::f64::consts::PI;
-use std::fs;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -20,6 +21,7 @@ use estimand::{Error, Estimator, Integrand, MonteCarlo, Replicated, cube};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use integrands::{Family, Problem};
+use target::Target;
 
 /// Measures root mean square relative errors and times of growing numbers of evaluations.
 ///
@@ -27,7 +29,7 @@ use integrands::{Family, Problem};
 /// `RAYON_NUM_THREADS` says.
 #[derive(Parser)]
 struct Arguments {
-    /// One of Genz' six, or peak
+    /// The integrand, with its usual parameters
     #[arg(value_enum)]
     integrand: Family,
     /// In how many dimensions: 2, 3, 4, 5 or 10
@@ -46,8 +48,8 @@ struct Arguments {
     #[arg(long, default_value_t = 5e-6, value_parser = error)]
     enough: f64,
     /// Write the result as JSON to a file, or to standard output for `-`
-    #[arg(long, value_name = "FILE")]
-    json: Option<String>,
+    #[arg(long, value_name = "FILE", value_parser = Target::new)]
+    json: Option<Target>,
 }
 
 fn error(text: &str) -> Result<f64, String> {
@@ -167,13 +169,11 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
         "runs": arguments.runs,
         "rows": json,
     });
-    match arguments.json.as_deref() {
-        Some("-") => {
-            println!("{json}");
+    if let Some(target) = &arguments.json {
+        target.write(&json.to_string())?;
+        if target.is_standard() {
             return Ok(());
         }
-        Some(file) => fs::write(file, format!("{json}\n"))?,
-        None => {}
     }
     println!("method     evaluations     seconds   relative error");
     for row in rows {

@@ -7,11 +7,12 @@
 mod methods;
 #[path = "common/stiff.rs"]
 mod stiff;
+#[path = "common/target.rs"]
+mod target;
 #[path = "common/trial.rs"]
 #[allow(dead_code, reason = "shared with the other programs")]
 mod trial;
 
-use std::fs;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -21,6 +22,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use methods::Method;
 use serde_json::{Value, json};
 use stiff::Case;
+use target::Target;
 use trial::Trial;
 
 /// Runs every method on integrands that are hard to integrate, and says which to use.
@@ -36,8 +38,8 @@ struct Arguments {
     #[arg(long, default_value_t = 1_000_000_000)]
     longest: u64,
     /// Also write the table as JSON to a file, or nothing but that to standard output for `-`
-    #[arg(long, value_name = "FILE")]
-    json: Option<String>,
+    #[arg(long, value_name = "FILE", value_parser = Target::new)]
+    json: Option<Target>,
     /// Only integrands whose name contains this
     #[arg(
         long,
@@ -59,7 +61,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
-    let only_json = arguments.json.as_deref() == Some("-");
+    let only_json = arguments.json.as_ref().is_some_and(Target::is_standard);
     let show = |text: &str| {
         if !only_json {
             println!("{text}");
@@ -133,12 +135,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
         table.len()
     ));
     let single = single(arguments.longest, &show)?;
-    if let Some(file) = &arguments.json {
-        let text = serde_json::to_string_pretty(&json!({ "rows": table, "single": single }))?;
-        match file.as_str() {
-            "-" => println!("{text}"),
-            file => fs::write(file, text)?,
-        }
+    if let Some(target) = &arguments.json {
+        let all = json!({ "rows": table, "single": single });
+        target.write(&serde_json::to_string_pretty(&all)?)?;
     }
     Ok(())
 }

@@ -1,0 +1,40 @@
+//! Where results are written.
+
+use std::fs::{self, OpenOptions};
+use std::path::PathBuf;
+
+/// A file, or standard output.
+#[derive(Clone, Debug)]
+pub(crate) enum Target {
+    Standard,
+    File(PathBuf),
+}
+
+impl Target {
+    /// What an argument names, `-` being standard output. A file must be one that can be written: that is said before the work is
+    /// done, and what is in the file stays until then.
+    pub(crate) fn new(name: &str) -> Result<Self, String> {
+        if name == "-" {
+            return Ok(Self::Standard);
+        }
+        let opened = OpenOptions::new().append(true).create(true).open(name);
+        opened.map_err(|error| error.to_string())?;
+        Ok(Self::File(name.into()))
+    }
+
+    pub(crate) fn is_standard(&self) -> bool {
+        matches!(self, Self::Standard)
+    }
+
+    /// Writes `text`, a line or more.
+    pub(crate) fn write(&self, text: &str) -> Result<(), String> {
+        match self {
+            Self::Standard => {
+                println!("{text}");
+                Ok(())
+            }
+            Self::File(file) => fs::write(file, format!("{text}\n"))
+                .map_err(|error| format!("{}: {error}", file.display())),
+        }
+    }
+}

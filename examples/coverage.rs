@@ -73,7 +73,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
     let (genz, stiff) = (plan.genz()?, plan.stiff()?);
     bar.finish_and_clear();
     if genz.is_empty() && stiff.is_empty() {
-        return Err(format!("no row contains {}", arguments.only).into());
+        return Err(format!("no row contains `{}`", arguments.only).into());
     }
     let table = table(arguments, &genz, &stiff)?;
     let only_json = arguments.json.as_ref().is_some_and(Target::is_standard);

@@ -12,14 +12,22 @@ pub(crate) enum Target {
 
 impl Target {
     /// What an argument names, `-` being standard output. A file must be one that can be written: that is said before the work is
-    /// done, and what is in the file stays until then.
+    /// done, and leaves no trace.
     pub(crate) fn new(name: &str) -> Result<Self, String> {
         if name == "-" {
             return Ok(Self::Standard);
         }
-        let opened = OpenOptions::new().append(true).create(true).open(name);
-        opened.map_err(|error| error.to_string())?;
-        Ok(Self::File(name.into()))
+        let file = PathBuf::from(name);
+        let is_new = !file.exists();
+        // Pipes and devices are opened once, to be written.
+        if is_new || file.is_file() {
+            let opened = OpenOptions::new().append(true).create(true).open(&file);
+            opened.map_err(|error| error.to_string())?;
+        }
+        if is_new {
+            fs::remove_file(&file).map_err(|error| error.to_string())?;
+        }
+        Ok(Self::File(file))
     }
 
     pub(crate) fn is_standard(&self) -> bool {

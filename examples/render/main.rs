@@ -73,7 +73,7 @@ struct Arguments {
     #[arg(long, conflicts_with_all = ["time", "noise", "points", "replicates", "checkpoint"])]
     adaptive: bool,
     /// Ends paths by Russian roulette as a pilot of so many paths a pixel, in at most 128 x 128 pixels and twice over, shows that it pays
-    /// with independent points; others may lose by it
+    /// with independent points; others may lose by it. Takes the place of `rr_depth`; its time is told apart, as that of loading is
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..))]
     learn_roulette: Option<u64>,
     /// Loads the scene as the type that can render every scene, instead of the smallest that is enough

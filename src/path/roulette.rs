@@ -35,7 +35,7 @@ impl Rule {
         }
     }
 
-    /// By what a path carries times a factor for the segment, after every segment. Up to the fifth paths that are
+    /// By what a path carries times a factor for the segment, after every segment. Before the fifth paths that are
     /// certain to survive draw no coordinate.
     fn learned(factors: [f64; TOLD_APART]) -> Self {
         Self {
@@ -81,4 +81,72 @@ impl Rule {
 #[inline]
 fn place(segment: u32) -> usize {
     (segment as usize).clamp(1, TOLD_APART) - 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Gives one coordinate and counts how often.
+    struct Once(f64, u32);
+
+    impl Sampler for Once {
+        fn next_1d(&mut self) -> f64 {
+            self.1 += 1;
+            self.0
+        }
+    }
+
+    #[test]
+    fn the_weight_is_the_inverse_of_the_chance() {
+        let rules = [
+            Rule::of_throughput(1),
+            Rule::of_throughput(5),
+            Rule::learned([0.3; TOLD_APART]),
+            Rule::learned([7.0; TOLD_APART]),
+        ];
+        for rule in rules {
+            for (segment, carried) in [(1, 0.5), (2, 0.1), (4, 3.0), (5, 0.9), (16, 1.0), (40, 2.0)]
+            {
+                let below = rule.survival(segment, carried).min(1.0);
+                let weight = rule.play(segment, carried, &mut Once(below * (1.0 - 1e-9), 0));
+                let weight = f64::from(weight.expect("a coordinate below the chance"));
+                assert!(
+                    (weight * below - 1.0).abs() < 1e-6,
+                    "{rule:?} {segment} {carried}"
+                );
+                let ends = rule.play(segment, carried, &mut Once(below, 0)).is_none();
+                assert_eq!(ends, below < 1.0, "{rule:?} {segment} {carried}");
+            }
+        }
+    }
+
+    #[test]
+    fn certain_survival_draws_nothing_and_ends_with_the_fifth_segment() {
+        let rule = Rule::learned([7.0; TOLD_APART]);
+        for segment in 1..100 {
+            let mut u = Once(0.94, 0);
+            assert!(rule.play(segment, 1.0, &mut u).is_some());
+            assert_eq!(u.1, u32::from(segment >= 5), "segment {segment}");
+            let ends = rule
+                .play(segment, f32::INFINITY, &mut Once(0.96, 0))
+                .is_none();
+            assert_eq!(ends, segment >= 5, "segment {segment}");
+        }
+        // Without learning every path may end from the first segment played on.
+        let mut u = Once(0.96, 0);
+        assert!(Rule::of_throughput(1).play(1, 1.0, &mut u).is_none());
+    }
+
+    #[test]
+    fn black_paths_end_and_nan_goes_on() {
+        let mut u = Once(0.5, 0);
+        for rule in [Rule::of_throughput(0), Rule::learned([0.1; TOLD_APART])] {
+            for segment in [0, 1, 5, u32::MAX] {
+                assert_eq!(rule.play(segment, 0.0, &mut u), None);
+                assert_eq!(rule.play(segment, -1.0, &mut u), None);
+                assert!(rule.play(segment, f32::NAN, &mut Once(0.5, 0)).is_some());
+            }
+        }
+    }
 }

@@ -112,7 +112,8 @@ impl Tally {
     ///
     /// A path that carries `t` survives with probability `f t`. What it brings, `t L`, then adds `E[(t L)^2] / (f t)` to the variance
     /// `V` of a path of the picture, and its further segments `C` cost `f t C` of the time `T`. The product is least where
-    /// `f^2` is the ratio of the two over that of `V` and `T`.
+    /// `f^2` is the ratio of the two over that of `V` and `T`. That holds for paths whose survival is not certain, with the other
+    /// factors as they are; all paths are counted, so that the least is met about.
     fn factors(&self) -> Option<[f64; TOLD_APART]> {
         let variance = self.variance / self.pixels;
         let time = self.segments / self.paths;
@@ -120,7 +121,7 @@ impl Tally {
             return None;
         }
         Some(self.seen.map(|Seen { gain, cost }| {
-            // No path came here: as the rule without learning.
+            // No path came here: by throughput.
             if !(cost > 0.0) {
                 return 1.0;
             }
@@ -213,14 +214,14 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     /// The [paths](Self::paths) of the view, ended by Russian roulette as it pays: a pilot of `count` paths in each of up to 128 x
     /// 128 pixels of a picture of `size`, twice over, tells how much light paths still bring after each segment and how
     /// many segments they still have. The probability of survival is what a path carries times a factor for the
-    /// segment, chosen so that the product of variance and time is least, and tests of few paths are not trusted
-    /// beyond a tenth.
+    /// segment, chosen so that the product of variance and work is about least. Factors are 0.1 at least, since a pilot may have
+    /// missed rare light. It takes the place of [`Paths::roulette_from`], which undoes it.
     ///
     /// Its limit: the variance is that of independent points. Good sets have less, and for them too many paths are ended: the Cornell box
-    /// with scrambled Sobol' points has half of the efficiency then, where with independent ones it gains a fifth
-    /// (`benches/README.md`). The factors hold for the whole picture, and work is counted in segments.[^rath]
+    /// with scrambled Sobol' points has less than half of the efficiency then. Where it pays is measured in `benches/README.md`. The
+    /// factors hold for the whole picture, and work is counted in segments.[^rath]
     ///
-    /// Unbiased, if the picture has another seed than the pilot. Where the pilot sees no variance the paths stay as they are.
+    /// Unbiased, if the picture has another seed than the pilot. Where a round sees no variance the paths stay as they are.
     ///
     /// ```
     /// use estimand::{MonteCarlo, path::scenes};

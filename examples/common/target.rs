@@ -1,6 +1,8 @@
 //! Where results are written.
 
+use std::error::Error;
 use std::fs::{self, OpenOptions};
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 /// A file, or standard output.
@@ -35,14 +37,11 @@ impl Target {
     }
 
     /// Writes `text`, a line or more.
-    pub(crate) fn write(&self, text: &str) -> Result<(), String> {
+    pub(crate) fn write(&self, text: &str) -> Result<(), Box<dyn Error>> {
         match self {
-            Self::Standard => {
-                println!("{text}");
-                Ok(())
-            }
+            Self::Standard => Ok(writeln!(io::stdout().lock(), "{text}")?),
             Self::File(file) => fs::write(file, format!("{text}\n"))
-                .map_err(|error| format!("{}: {error}", file.display())),
+                .map_err(|error| format!("{}: {error}", file.display()).into()),
         }
     }
 }

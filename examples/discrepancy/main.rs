@@ -7,10 +7,13 @@ mod read;
 #[path = "../common/sets.rs"]
 mod sets;
 mod sweep;
+#[path = "../common/target.rs"]
+#[allow(dead_code, reason = "shared with the other programs")]
+mod target;
 
 use std::error::Error;
 use std::io::{ErrorKind, IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -20,6 +23,7 @@ use indicatif::ProgressBar;
 use serde_json::{Value, json};
 
 use measure::{Kind, Measure, Metric};
+use target::Target;
 
 /// Measures the discrepancy of a point set or of a file of points.
 ///
@@ -77,8 +81,8 @@ struct Arguments {
     )]
     budget: f64,
     /// Writes the answer as JSON; `-` for the standard output
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[arg(long, value_name = "FILE", value_parser = Target::new)]
+    json: Option<Target>,
     /// Draws the discrepancy of several sets against the count, as PNG and SVG
     #[arg(long, conflicts_with_all = ["set", "count"])]
     sweep: bool,
@@ -144,7 +148,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         let curves = sweep.run()?;
         // The numbers first: they are worth having even if there is nothing to draw.
         match &arguments.json {
-            Some(path) => write_json(path, &sweep.json(&curves))?,
+            Some(target) => target.write(&format!("{:#}", sweep.json(&curves)))?,
             None => write!(std::io::stdout().lock(), "{}", sweep.table(&curves))?,
         }
         std::fs::create_dir_all(&arguments.out)
@@ -168,14 +172,14 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     let answer = answer?;
     match &arguments.json {
-        Some(path) => {
+        Some(target) => {
             let mut object = serde_json::Map::new();
             object.insert("metric".into(), json!(arguments.metric.name()));
             object.extend(answer.json());
             object.insert("count".into(), json!(points.count()));
             object.insert("dimensions".into(), json!(points.dimensions()));
             object.insert("seconds".into(), json!(seconds));
-            write_json(path, &Value::Object(object))
+            target.write(&format!("{:#}", Value::Object(object)))
         }
         None => {
             let mut out = std::io::stdout().lock();
@@ -191,16 +195,6 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             )?;
             Ok(())
         }
-    }
-}
-
-fn write_json(path: &Path, value: &Value) -> Result<(), Box<dyn Error>> {
-    let text = format!("{value:#}\n");
-    if path == Path::new("-") {
-        std::io::stdout().lock().write_all(text.as_bytes())?;
-        Ok(())
-    } else {
-        std::fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()).into())
     }
 }
 

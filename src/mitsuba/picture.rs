@@ -10,7 +10,7 @@ use crate::path::filter::Filter;
 use crate::path::light::{Environment, Light};
 use crate::path::roulette::Steps;
 use crate::path::sensor::Sensor;
-use crate::path::{Adapted, Adaptive, Pixel, Unfinished, View};
+use crate::path::{Adapted, Adaptive, Unfinished, View};
 use crate::points::PointSet;
 use crate::{Average, Error, Estimate, Estimator, Incomplete, NonFinite, Sampler};
 
@@ -76,7 +76,7 @@ where
     ) -> Result<Estimate<DVec3>, Incomplete<DVec3>> {
         Average::new(points, count)
             .non_finite(NonFinite::Reject)
-            .estimate(&pixel(self, position, size))
+            .estimate(&self.pixel(position, size))
     }
 
     fn adaptive(
@@ -106,23 +106,9 @@ where
             index,
             drawn: &drawn,
         };
-        pixel(self, position, size).follow(&mut counting, &mut Steps::default());
+        self.pixel(position, size)
+            .follow(&mut counting, &mut Steps::default());
         u64::from(drawn.get())
-    }
-}
-
-fn pixel<B, L, E, C, F>(
-    view: &View<B, L, E, C, F>,
-    position: [u32; 2],
-    size: [u32; 2],
-) -> Pixel<'_, B, L, E, C, F> {
-    Pixel {
-        scene: &view.scene,
-        sensor: &view.sensor,
-        filter: &view.filter,
-        paths: view.paths,
-        position,
-        size,
     }
 }
 

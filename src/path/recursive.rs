@@ -6,9 +6,9 @@ use super::bsdf::Bsdf;
 use super::filter::Filter;
 use super::light::{Environment, Light};
 use super::radiance::power;
+use super::roulette::Rule;
 use super::sensor::Sensor;
 use super::{Pixel, Ray, Scene};
-use crate::integrands::Survival;
 use crate::{Error, Integrand, Sampler};
 
 /// Stochastic ray tracing: at every surface several rays go on, and their mean is the light that arrives.
@@ -197,11 +197,7 @@ impl Recursive {
                 (!(carried < share) && grown.segment <= LONGEST).then_some(1.0)
             }
             Ending::Roulette(from) if grown.segment <= from => Some(1.0),
-            Ending::Roulette(_) => {
-                let survival = Survival::new(f64::from(carried).min(0.95)).ok()?;
-                #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-                survival.play(u.next_1d()).map(|weight| weight as f32)
-            }
+            Ending::Roulette(from) => Rule::of_throughput(from).play(grown.segment - 1, carried, u),
         }
     }
 }

@@ -283,12 +283,7 @@ impl Image {
         proceed: &(dyn Fn(u32) -> bool + Sync),
     ) -> Result<Self, Unfinished> {
         let [width, height] = size;
-        if width == 0 || height == 0 {
-            let given = format_args!("{width} x {height}");
-            return Err(
-                Error::refused("size of the picture", "at least 1 x 1 pixels", given).into(),
-            );
-        }
+        check_size(size)?;
         // The first row that is known to stop. Rows before it go on: one of them may stop too, and is to be reported then.
         let first_stopped = AtomicU32::new(u32::MAX);
         let row = |y| {
@@ -333,4 +328,17 @@ impl Image {
         }
         Ok(Self::of_rows(size, &finished))
     }
+}
+
+/// That a picture has pixels.
+pub(in crate::path) fn check_size([width, height]: [u32; 2]) -> Result<(), Error> {
+    if width > 0 && height > 0 {
+        return Ok(());
+    }
+    let given = format_args!("{width} x {height}");
+    Err(Error::refused(
+        "size of the picture",
+        "at least 1 x 1 pixels",
+        given,
+    ))
 }

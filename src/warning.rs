@@ -15,9 +15,10 @@ pub enum Warning {
     /// or all points missed what matters.
     NoSpread,
     /// A single value makes up a large share of the variance, as it does when the integrand is a narrow peak, a
-    /// rare event or has no variance at all. The error may be many times the error bar.
+    /// rare event or has no variance at all; or one of each replicate makes up most of the variance between them, as it does
+    /// where points that are even meet a singularity. The error may be many times the error bar.
     FewValues {
-        /// The largest share of one value in the sum of squared deviations.
+        /// The largest share of one value in the sum of squared deviations, or of one of each replicate in that of their means.
         share: f64,
     },
     /// Most strata show no variance, and what there is comes from a few of them, as it does in the search for a narrow peak or a

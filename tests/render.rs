@@ -14,7 +14,9 @@ use estimand::path::light::{AreaLights, Environment, Light, NoEnvironment};
 use estimand::path::scenes::{self, CORNELL_LIGHT};
 use estimand::path::sensor::{Pinhole, Sensor};
 use estimand::path::{Adaptive, Direct, Ending, Image, Recursive, View};
-use estimand::points::{Halton, Hammersley, HashedOwen, NRooks, Owen, Sobol, Stratified};
+use estimand::points::{
+    DigitPermutation, Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Sobol, Stratified,
+};
 use estimand::{Average, Estimator, MonteCarlo};
 
 fn reference(name: &'static str, size: usize, samples: u64) -> Reference {
@@ -44,6 +46,9 @@ fn batches<B: Bsdf, L: Light, E: Environment, C: Sensor, T: Estimator>(
     })
 }
 
+/// A point set for each seed.
+type Points<'a> = &'a (dyn Fn(u64) -> Box<dyn PointSet> + Sync);
+
 type Room = View<Lambertian, AreaLights, NoEnvironment, Pinhole>;
 
 fn short_paths(segments: u32) -> Room {
@@ -68,31 +73,32 @@ fn cornell_box_of_eight_segments() {
     let view = short_paths(8);
     let ours = batches(&view, 128, 8, 2, |seed| MonteCarlo::new(8, seed));
     reference.compare(&ours, "monte-carlo").check();
+    let check = |name: &str, spp: u64, seed: u64, points: Points<'_>| {
+        let ours = batches(&view, 128, spp, seed, |seed| {
+            Average::new(points(seed), spp)
+        });
+        reference.compare(&ours, name).check();
+    };
     // A grid of 3 by 3.
-    let ours = batches(&view, 128, 9, 3, |seed| {
-        Average::new(Stratified::new(9, 2, seed).unwrap(), 9)
+    check("stratified", 9, 3, &|seed| {
+        Box::new(Stratified::new(9, 2, seed).unwrap())
     });
-    reference.compare(&ours, "stratified").check();
-    let ours = batches(&view, 128, 8, 11, |seed| {
-        Average::new(NRooks::new(8, seed).unwrap(), 8)
+    check("n-rooks", 8, 11, &|seed| {
+        Box::new(NRooks::new(8, seed).unwrap())
     });
-    reference.compare(&ours, "n-rooks").check();
     let halton = Halton::new(32).unwrap();
-    let ours = batches(&view, 128, 8, 4, |seed| {
-        Average::new(halton.clone().scrambled(Owen { seed }), 8)
+    check("halton", 8, 4, &|seed| {
+        Box::new(halton.clone().scrambled(Owen { seed }))
     });
-    reference.compare(&ours, "halton").check();
     let hammersley = Hammersley::new(8, 32).unwrap();
-    let ours = batches(&view, 128, 8, 12, |seed| {
+    check("hammersley", 8, 12, &|seed| {
         let points = hammersley.clone().offset(unit(hash(seed, 0))).unwrap();
-        Average::new(points.scrambled(Owen { seed }), 8)
+        Box::new(points.scrambled(DigitPermutation { seed }))
     });
-    reference.compare(&ours, "hammersley").check();
     let sobol = Sobol::new(32).unwrap();
-    let ours = batches(&view, 128, 8, 5, |seed| {
-        Average::new(sobol.clone().scrambled(HashedOwen { seed }), 8)
+    check("sobol", 8, 5, &|seed| {
+        Box::new(sobol.clone().scrambled(HashedOwen { seed }))
     });
-    reference.compare(&ours, "sobol").check();
 }
 
 #[test]
@@ -172,7 +178,8 @@ fn biased_pictures_do_not_agree() {
     for (view, label) in cases {
         let plain = batches(view, 128, 16, 9, |seed| MonteCarlo::new(16, seed));
         let nets = batches(view, 128, 16, 10, |seed| {
-            Average::new(sobol.clone().scrambled(HashedOwen { seed }), 16)
+            let points: Box<dyn PointSet> = Box::new(sobol.clone().scrambled(HashedOwen { seed }));
+            Average::new(points, 16)
         });
         for (ours, points) in [(plain, "monte-carlo"), (nets, "sobol")] {
             let outcome = reference.compare(&ours, &format!("{label}-{points}"));

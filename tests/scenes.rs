@@ -13,7 +13,7 @@ use estimand::hash::hash;
 use estimand::mitsuba::{Instance, Loaded, read};
 use estimand::path::Image;
 use estimand::points::{
-    Halton, HashedOwen, Independent, Owen, PointSet, Rescrambled, Sobol, pixel,
+    DigitPermutation, Halton, HashedOwen, Independent, PointSet, Rescrambled, Sobol, pixel,
 };
 use glam::DVec3;
 
@@ -75,7 +75,7 @@ fn compare_filtered(name: &'static str, area: f64) {
             Box::new(sobol.clone().scrambled(HashedOwen { seed }))
         }),
         ("halton", &|seed| {
-            Box::new(halton.clone().scrambled(Owen { seed }))
+            Box::new(halton.clone().scrambled(DigitPermutation { seed }))
         }),
         ("rescrambled", &|seed| {
             Box::new(Rescrambled::new(4, seed).unwrap())

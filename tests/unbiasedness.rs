@@ -165,19 +165,50 @@ fn check_variance(name: &str, means: &Moments<f64>, expected: f64) -> Result<(),
     Ok(())
 }
 
-/// Every randomised point set, alone and replicated.
-macro_rules! point_sets {
-    ($integrand:expr, $truth:expr, $($name:literal: |$seed:ident, $count:ident| $set:expr),+ $(,)?) => {$(
-        check(concat!($name, ", average"), $integrand, $truth, |$seed| {
-            let $count = 16;
-            Average::new($set, $count)
-        })?;
-        check(concat!($name, ", replicated"), $integrand, $truth, |seed| {
-            let $count = 8;
-            Replicated::new(4, $count, move |$seed| $set).seed(seed)
-        })?;
-    )+};
-}
+/// A point set of a seed and a number of points.
+type Set = (&'static str, fn(u64, u64) -> Box<dyn PointSet>);
+
+/// Every kind of randomised point set.
+const SETS: [Set; 13] = [
+    ("independent", |seed, _| Box::new(Independent::new(seed))),
+    ("stratified", |seed, count| {
+        Box::new(Stratified::new(count, 3, seed).expect("valid"))
+    }),
+    ("stratified pairs", |seed, count| {
+        Box::new(Stratified::new(count, 2, seed).expect("valid"))
+    }),
+    ("n-rooks", |seed, count| {
+        Box::new(NRooks::new(count, seed).expect("valid"))
+    }),
+    ("halton, digit permutation", |seed, _| {
+        Box::new(halton().scrambled(DigitPermutation { seed }))
+    }),
+    ("halton, digital shift", |seed, _| {
+        Box::new(halton().scrambled(DigitalShift { seed }))
+    }),
+    ("halton, owen", |seed, _| {
+        Box::new(halton().scrambled(Owen { seed }))
+    }),
+    ("hammersley, shifted", |seed, count| {
+        let points = Hammersley::new(count, 3).expect("valid");
+        Box::new(Shifted::new(points, seed))
+    }),
+    ("sobol, digital shift", |seed, _| {
+        Box::new(sobol().scrambled(DigitalShift { seed }))
+    }),
+    ("sobol, linear matrix", |seed, _| {
+        Box::new(sobol().scrambled(LinearMatrix { seed }))
+    }),
+    ("sobol, owen", |seed, _| {
+        Box::new(sobol().scrambled(Owen { seed }))
+    }),
+    ("sobol, hashed owen", |seed, _| {
+        Box::new(sobol().scrambled(HashedOwen { seed }))
+    }),
+    ("sobol, folded", |seed, _| {
+        Box::new(Folded::new(Shifted::new(sobol(), seed)))
+    }),
+];
 
 fn halton() -> Halton {
     Halton::new(3).expect("three dimensions")
@@ -202,21 +233,11 @@ proptest! {
     #[test]
     fn every_point_set_is_unbiased(f in random()) {
         let truth = f.mean();
-        point_sets! {
-            &f, truth,
-            "independent": |seed, _count| Independent::new(seed),
-            "stratified": |seed, count| Stratified::new(count, 3, seed).expect("valid"),
-            "stratified pairs": |seed, count| Stratified::new(count, 2, seed).expect("valid"),
-            "n-rooks": |seed, count| NRooks::new(count, seed).expect("valid"),
-            "halton, digit permutation": |seed, _count| halton().scrambled(DigitPermutation { seed }),
-            "halton, digital shift": |seed, _count| halton().scrambled(DigitalShift { seed }),
-            "halton, owen": |seed, _count| halton().scrambled(Owen { seed }),
-            "hammersley, shifted": |seed, count| Shifted::new(Hammersley::new(count, 3).expect("valid"), seed),
-            "sobol, digital shift": |seed, _count| sobol().scrambled(DigitalShift { seed }),
-            "sobol, linear matrix": |seed, _count| sobol().scrambled(LinearMatrix { seed }),
-            "sobol, owen": |seed, _count| sobol().scrambled(Owen { seed }),
-            "sobol, hashed owen": |seed, _count| sobol().scrambled(HashedOwen { seed }),
-            "sobol, folded": |seed, _count| Folded::new(Shifted::new(sobol(), seed)),
+        for (name, set) in SETS {
+            check(&format!("{name}, average"), &f, truth, |seed| Average::new(set(seed, 16), 16))?;
+            check(&format!("{name}, replicated"), &f, truth, |seed| {
+                Replicated::new(4, 8, |seed| set(seed, 8)).seed(seed)
+            })?;
         }
     }
 

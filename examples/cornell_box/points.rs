@@ -2,8 +2,8 @@
 
 use clap::ValueEnum;
 use estimand::path::{Image, Unfinished};
-use estimand::points::{Halton, Hammersley, HashedOwen, NRooks, Owen, Sobol, Stratified};
-use estimand::{Average, Estimator, MonteCarlo, hash};
+use estimand::points::{Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Sobol, Stratified};
+use estimand::{Average, MonteCarlo, hash};
 
 use crate::measure::Room;
 
@@ -23,6 +23,9 @@ pub(crate) enum Points {
     /// Sobol's points, Owen-scrambled by hashing
     Sobol,
 }
+
+/// A point set for each seed, of one type for all: the loop over paths is compiled once for it.
+type Randomised<'a> = &'a (dyn Fn(u64) -> Box<dyn PointSet> + Sync);
 
 /// Dimensions of the sets: those of the paths that matter. Longer ones go on with independent coordinates.
 const DIMENSIONS: u32 = 32;
@@ -59,59 +62,36 @@ impl Points {
         seed: u64,
         proceed: impl Fn(u32) -> bool + Sync,
     ) -> Result<Image, Unfinished> {
-        let picture = Picture {
-            room,
-            size,
-            seed,
-            proceed,
+        let size = [size; 2];
+        let average = |points: Randomised<'_>| {
+            room.render_while(size, seed, |key| Average::new(points(key), spp), &proceed)
         };
         match self {
-            Self::MonteCarlo => picture.render(|key| MonteCarlo::new(spp, key)),
+            Self::MonteCarlo => {
+                room.render_while(size, seed, |key| MonteCarlo::new(spp, key), &proceed)
+            }
             Self::Stratified => {
-                picture.render(|key| Average::new(Stratified::new(spp, 2, key).expect(VALID), spp))
+                average(&|key| Box::new(Stratified::new(spp, 2, key).expect(VALID)))
             }
-            Self::NRooks => {
-                picture.render(|key| Average::new(NRooks::new(spp, key).expect(VALID), spp))
-            }
+            Self::NRooks => average(&|key| Box::new(NRooks::new(spp, key).expect(VALID))),
             Self::Halton => {
                 let points = Halton::new(DIMENSIONS).expect(VALID);
-                let points = |seed| points.clone().scrambled(Owen { seed });
-                picture.render(|key| Average::new(points(key), spp))
+                average(&|seed| Box::new(points.clone().scrambled(Owen { seed })))
             }
             Self::Hammersley => {
                 let points = Hammersley::new(spp, DIMENSIONS).expect(VALID);
-                let points = |seed| {
+                average(&|seed| {
                     let offset = hash::unit(hash::hash(seed, 0));
                     let points = points.clone().offset(offset).expect(VALID);
-                    points.scrambled(Owen { seed })
-                };
-                picture.render(|key| Average::new(points(key), spp))
+                    Box::new(points.scrambled(Owen { seed }))
+                })
             }
             Self::Sobol => {
                 let points = Sobol::new(DIMENSIONS).expect(VALID);
-                let points = |seed| points.clone().scrambled(HashedOwen { seed });
-                picture.render(|key| Average::new(points(key), spp))
+                average(&|seed| Box::new(points.clone().scrambled(HashedOwen { seed })))
             }
         }
     }
 }
 
 const VALID: &str = "the count is positive, the dimensions are few, the offset is a fraction";
-
-/// What the pictures of all sets have in common.
-struct Picture<'a, F> {
-    room: &'a Room,
-    size: u32,
-    seed: u64,
-    proceed: F,
-}
-
-impl<F: Fn(u32) -> bool + Sync> Picture<'_, F> {
-    fn render<T: Estimator>(
-        self,
-        estimator: impl Fn(u64) -> T + Sync,
-    ) -> Result<Image, Unfinished> {
-        self.room
-            .render_while([self.size; 2], self.seed, estimator, self.proceed)
-    }
-}

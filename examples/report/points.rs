@@ -5,7 +5,7 @@ use estimand::path::filter::Filter;
 use estimand::path::light::{Environment, Light};
 use estimand::path::sensor::Sensor;
 use estimand::path::{Image, Unfinished, View};
-use estimand::points::{Halton, Hammersley, HashedOwen, NRooks, Owen, Sobol, Stratified};
+use estimand::points::{Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Sobol, Stratified};
 use estimand::{Average, MonteCarlo, hash};
 
 /// A point set, randomised anew for every pixel.
@@ -18,6 +18,9 @@ pub(crate) enum Points {
     Hammersley,
     Sobol,
 }
+
+/// A point set for each seed, of one type for all: the loop over paths is compiled once for it.
+type Randomised<'a> = &'a (dyn Fn(u64) -> Box<dyn PointSet> + Sync);
 
 /// Where the well-spread dimensions end; paths that live longer go on with independent ones.
 const DIMENSIONS: u32 = 32;
@@ -54,33 +57,29 @@ impl Points {
         seed: u64,
     ) -> Result<Image, Unfinished> {
         let size = [size; 2];
+        let average =
+            |points: Randomised<'_>| view.render(size, seed, |key| Average::new(points(key), spp));
         match self {
             Self::Plain => view.render(size, seed, |key| MonteCarlo::new(spp, key)),
-            Self::Stratified => view.render(size, seed, |key| {
-                Average::new(Stratified::new(spp, 2, key).expect(VALID), spp)
-            }),
-            Self::NRooks => view.render(size, seed, |key| {
-                Average::new(NRooks::new(spp, key).expect(VALID), spp)
-            }),
+            Self::Stratified => {
+                average(&|key| Box::new(Stratified::new(spp, 2, key).expect(VALID)))
+            }
+            Self::NRooks => average(&|key| Box::new(NRooks::new(spp, key).expect(VALID))),
             Self::Halton => {
                 let points = Halton::new(DIMENSIONS).expect(VALID);
-                view.render(size, seed, |key| {
-                    Average::new(points.clone().scrambled(Owen { seed: key }), spp)
-                })
+                average(&|seed| Box::new(points.clone().scrambled(Owen { seed })))
             }
             Self::Hammersley => {
                 let points = Hammersley::new(spp, DIMENSIONS).expect(VALID);
-                view.render(size, seed, |key| {
-                    let offset = hash::unit(hash::hash(key, 0));
+                average(&|seed| {
+                    let offset = hash::unit(hash::hash(seed, 0));
                     let points = points.clone().offset(offset).expect(VALID);
-                    Average::new(points.scrambled(Owen { seed: key }), spp)
+                    Box::new(points.scrambled(Owen { seed }))
                 })
             }
             Self::Sobol => {
                 let points = Sobol::new(DIMENSIONS).expect(VALID);
-                view.render(size, seed, |key| {
-                    Average::new(points.clone().scrambled(HashedOwen { seed: key }), spp)
-                })
+                average(&|seed| Box::new(points.clone().scrambled(HashedOwen { seed })))
             }
         }
     }

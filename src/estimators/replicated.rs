@@ -120,21 +120,24 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Replicated<F> {
         // Replicates that were cut short are worth less than the others: they count only if they are all there
         // is.
         let most = tallies.iter().map(Tally::used).max()?;
-        let whole = tallies.iter().filter(|tally| tally.used() == most);
-        let means: Vec<V> = whole
-            .clone()
-            .map(|tally| *tally.moments())
-            .filter(|moments| moments.count() > 0)
-            .map(|moments| moments.mean())
+        let whole: Vec<&Tally<V>> = tallies
+            .iter()
+            .filter(|tally| tally.used() == most && tally.moments().count() > 0)
             .collect();
+        let means: Vec<V> = whole.iter().map(|tally| tally.moments().mean()).collect();
         if means.is_empty() {
             return None;
         }
         let moments: Moments<V> = means.iter().copied().collect();
         let mut all = Tally::EMPTY;
-        whole.for_each(|tally| all.merge(tally));
+        whole.iter().for_each(|tally| all.merge(tally));
         let std_error = moments.std_error();
         let mut warnings = diagnose(&all, std_error);
+        if let Some(few) = decided(&whole) {
+            // It says more than a share among all values.
+            warnings.retain(|warning| !matches!(warning, Warning::FewValues { .. }));
+            warnings.push(few);
+        }
         warnings.extend(Warning::of_replicates(moments.count()));
         warnings.extend(Warning::of_rejected(all.rejected()));
         let set = (self.points)(hash::hash(self.seed, 0));
@@ -152,6 +155,41 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Replicated<F> {
 }
 
 tallied!([P: PointSet, F: Fn(u64) -> P] Replicated<F>);
+
+/// Warns where one value of each replicate, its largest or its smallest, makes up most of the variance between them, in some
+/// component.
+///
+/// So it is at a singularity: the other points of a replicate are even, and its mean follows the point closest to it. That has the
+/// distribution of a single value, far from a normal one, whatever the number of points.
+fn decided<V: Value>(replicates: &[&Tally<V>]) -> Option<Warning> {
+    /// Of so few points one may make up a large share without that.
+    const FEW: u64 = 16;
+    /// The share of singularities is almost 1; that of others, known from few replicates, may come out as a half.
+    const MOST: f64 = 0.8;
+    if replicates.first()?.moments().count() < FEW {
+        return None;
+    }
+    let spread = |rest: &dyn Fn(&Tally<V>) -> V| {
+        let means: Moments<V> = replicates.iter().map(|tally| rest(tally)).collect();
+        means.root()
+    };
+    let without = |tally: &Tally<V>, value: V| {
+        let weight = 1.0 / tally.moments().count() as f64;
+        let mean = tally.moments().mean();
+        mean.zip(value, |mean, value| mean - weight * value)
+    };
+    let all = spread(&|tally| tally.moments().mean());
+    let highest = spread(&|tally| without(tally, tally.highest()[0]));
+    let lowest = spread(&|tally| without(tally, tally.lowest()[0].map(|low| -low)));
+    let mut share = 0.0_f64;
+    let _ = all.zip(highest.zip(lowest, f64::min), |all, rest| {
+        if all > 0.0 {
+            share = share.max(1.0 - (rest / all).powi(2));
+        }
+        0.0
+    });
+    (share > MOST).then_some(Warning::FewValues { share })
+}
 
 /// More sets than this are an argument gone wrong, not a plan.
 const MOST_REPLICATES: u64 = 1 << 24;
@@ -204,5 +242,55 @@ impl<F> fmt::Debug for Replicated<F> {
             .field("seed", &self.seed)
             .field("non_finite", &self.non_finite)
             .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::points::{HashedOwen, Independent, LinearMatrix, Sobol};
+    use crate::{Estimator, cube};
+
+    fn share(estimate: &Estimate<f64>) -> Option<f64> {
+        estimate.warnings.iter().find_map(|warning| match warning {
+            Warning::FewValues { share } => Some(*share),
+            _ => None,
+        })
+    }
+
+    /// The point closest to zero is uniform in the first of `n` cells, so that the mean varies by `n^-0.6` times what `u^-0.4` does,
+    /// which is `1/0.2 - 1/0.6^2 = 2.22`; the cells after it add `(i + u)^-0.4`, together 0.02. The largest value has 99 %.
+    #[test]
+    fn a_singularity_decides() {
+        let f = cube(|[x]: [f64; 1]| x.powf(-0.4));
+        let sobol = Sobol::new(1).unwrap();
+        for seed in 0..50 {
+            let set = |seed| sobol.clone().scrambled(HashedOwen { seed });
+            let estimate = Replicated::new(16, 1 << 12, set).seed(seed).estimate(&f);
+            let share = share(&estimate.unwrap());
+            assert!(share.is_some_and(|share| share > 0.8), "{seed}: {share:?}");
+        }
+    }
+
+    /// Under one shift of all points the largest value says what the mean is, and yet it is one of many that do.
+    #[test]
+    fn points_that_move_together_decide_together() {
+        let f = cube(|[x]: [f64; 1]| x.exp());
+        let sobol = Sobol::new(1).unwrap();
+        for seed in 0..50 {
+            let set = |seed| sobol.clone().scrambled(LinearMatrix { seed });
+            let estimate = Replicated::new(16, 1 << 10, set).seed(seed).estimate(&f);
+            assert_eq!(share(&estimate.unwrap()), None, "{seed}");
+        }
+    }
+
+    /// Of one point a replicate that point is everything.
+    #[test]
+    fn of_few_points_one_may_have_a_large_share() {
+        let f = cube(|[x]: [f64; 1]| x);
+        for count in 1..4 {
+            let estimate = Replicated::new(400, count, Independent::new).estimate(&f);
+            assert_eq!(share(&estimate.unwrap()), None);
+        }
     }
 }

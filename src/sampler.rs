@@ -125,6 +125,12 @@ impl<'a, P: PointSet + ?Sized> Cursor<'a, P> {
         self.dimension - left
     }
 
+    /// Whether there are coordinates at hand that were not read.
+    #[inline]
+    pub(crate) fn is_behind(&self) -> bool {
+        !self.ahead.as_slice().is_empty()
+    }
+
     /// The next coordinate past those at hand.
     #[inline]
     fn beyond(&mut self) -> f64 {
@@ -172,7 +178,16 @@ impl<P: PointSet + ?Sized> Sampler for Cursor<'_, P> {
                 self.ahead = ahead.iter();
                 here
             }
-            None => core::array::from_fn(|_| self.next_1d()),
+            None => {
+                // Of a copy, so that a cursor that never comes here can live in registers.
+                let mut copy = Self {
+                    ahead: self.ahead.clone(),
+                    ..*self
+                };
+                let coordinates = core::array::from_fn(|_| copy.next_1d());
+                *self = copy;
+                coordinates
+            }
         }
     }
 }

@@ -53,7 +53,7 @@ impl Bin {
     #[inline]
     pub(crate) fn image(&self, within: f64) -> f64 {
         const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
-        smaller(self.start + within * self.width, ALMOST_ONE)
+        smaller(ALMOST_ONE, self.start + within * self.width)
     }
 }
 

@@ -155,11 +155,7 @@ impl Walk {
                 visitor.enter(self.order[visit] as usize);
                 visitor.place(run.start, &mut room[run.start * stride..run.end * stride]);
             });
-            let points = room.chunks_exact(stride).zip(index..);
-            for ((place, value), (row, index)) in values.iter_mut().enumerate().zip(points) {
-                let u = Cursor::with_row(&rows.points, index, &row[..width], rows.width);
-                *value = visitor.value(place, u);
-            }
+            rows.evaluate(index, room, values, visitor);
             visitor.leave();
             visit = self.runs(visit, index, number, |visit, run| {
                 if part.offender.is_some() {
@@ -216,6 +212,27 @@ pub(crate) struct Rows {
     pub(crate) width: u32,
     /// Of so many points at once.
     pub(crate) number: usize,
+}
+
+impl Rows {
+    /// The values at the points from `first` on, whose coordinates are in `room`. A function of its own, so that the machine's
+    /// registers are for this loop.
+    #[inline(never)]
+    fn evaluate<T: Visitor>(
+        &self,
+        first: u64,
+        room: &[f64],
+        values: &mut [T::Value],
+        visitor: &mut T,
+    ) {
+        let stride = (self.width as usize).max(1);
+        let rows = room.chunks_exact(stride).zip(first..);
+        for ((place, value), (row, index)) in values.iter_mut().enumerate().zip(rows) {
+            let row = &row[..self.width as usize];
+            let u = Cursor::with_row(&self.points, index, row, self.width);
+            *value = visitor.value(place, u);
+        }
+    }
 }
 
 /// Evaluates an integrand in one stratum after the other.

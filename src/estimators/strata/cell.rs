@@ -36,21 +36,19 @@ impl<'a, I: Integrand> Cell<'a, I> {
     #[inline]
     fn confine(&self, u: f64, place: f64) -> f64 {
         const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
-        smaller((place + u) * self.side, ALMOST_ONE)
+        smaller(ALMOST_ONE, (place + u) * self.side)
     }
 
     #[inline]
     fn place_in<const AXES: usize>(&self, rows: &mut [f64]) {
-        let Some(corner) = self.corner.first_chunk::<AXES>() else {
+        let Some(&corner) = self.corner.first_chunk::<AXES>() else {
             return;
         };
         for row in rows.chunks_exact_mut(self.width) {
             let Some(row) = row.first_chunk_mut::<AXES>() else {
                 return;
             };
-            for (u, &place) in row.iter_mut().zip(corner) {
-                *u = self.confine(*u, place);
-            }
+            *row = core::array::from_fn(|axis| self.confine(row[axis], corner[axis]));
         }
     }
 }

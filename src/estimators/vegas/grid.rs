@@ -45,11 +45,13 @@ impl Grid {
 
     /// The axes under a map of `bins` bins, at the first stratum.
     pub(super) fn axes(&self, bins: usize) -> Vec<Axis> {
-        let axis = |&cells: &u64| Axis {
+        let numbers = (0_u32..).step_by(bins);
+        let axis = |(&cells, first): (&u64, u32)| Axis {
             cell: 0.0,
             scale: bins as f64 / cells as f64,
+            first,
         };
-        self.cells.iter().map(axis).collect()
+        self.cells.iter().zip(numbers).map(axis).collect()
     }
 
     /// Goes to the place of `stratum`.
@@ -68,6 +70,8 @@ pub(super) struct Axis {
     pub(super) cell: f64,
     /// Bins a cell.
     pub(super) scale: f64,
+    /// The number of its first bin among those of all axes.
+    pub(super) first: u32,
 }
 
 #[cfg(test)]

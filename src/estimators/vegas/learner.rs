@@ -42,8 +42,8 @@ pub(super) struct Learner<'a, I: Integrand> {
     place: Vec<Axis>,
     /// The reciprocal scale of each component.
     scale: Wide<I>,
-    /// The bin that each coordinate of the points at hand is in, point after point; [`UNREAD`] if the integrand did not
-    /// ask for it.
+    /// The bin that each coordinate of the points at hand is in, of those of all axes, point after point; [`UNREAD`] if the
+    /// integrand did not ask for it.
     hits: Vec<u32>,
     /// What each of these points weighs.
     jacobians: Vec<f64>,
@@ -82,11 +82,10 @@ impl<'a, I: Integrand> Learner<'a, I> {
 
     /// What the point `place` weighs if its integrand read so many coordinates.
     fn weight(&self, place: usize, read: usize) -> f64 {
-        let bins = self.bins.chunks_exact(self.number);
         let hits = &self.hits[place * self.place.len()..][..read];
-        bins.zip(hits)
+        hits.iter()
             // An axis that was not read has no bin.
-            .map(|(bins, &hit)| bins.get(hit as usize).map_or(1.0, |bin| bin.jacobian))
+            .map(|&hit| self.bins.get(hit as usize).map_or(1.0, |bin| bin.jacobian))
             .product()
     }
 }
@@ -116,25 +115,25 @@ impl<I: Integrand> Visitor for Learner<'_, I> {
         let rows = rows.chunks_exact_mut(axes);
         let hits = self.hits[first * axes..].chunks_exact_mut(axes);
         for ((row, hits), jacobian) in rows.zip(hits).zip(&mut self.jacobians[first..]) {
-            let bins = self.bins.chunks_exact(self.number);
-            let place = self.place.iter().zip(bins);
-            for ((x, hit), (axis, bins)) in row.iter_mut().zip(hits).zip(place) {
+            let mut product = 1.0;
+            for ((x, hit), axis) in row.iter_mut().zip(hits).zip(&self.place) {
                 let scaled = (axis.cell + *x) * axis.scale;
                 #[expect(clippy::cast_possible_truncation, reason = "below the number of bins")]
                 let number = (scaled as i32).min(last);
-                *hit = number.cast_unsigned();
-                let bin = bins[*hit as usize];
+                *hit = axis.first + number.cast_unsigned();
+                let bin = self.bins[*hit as usize];
                 *x = bin.image(scaled - f64::from(number));
-                *jacobian *= bin.jacobian;
+                product *= bin.jacobian;
             }
+            *jacobian = product;
         }
     }
 
     #[inline]
     fn value(&mut self, place: usize, mut u: Cursor<'_, Independent>) -> Wide<I> {
         let value = self.integrand.evaluate(&mut u).widen();
-        let (read, axes) = (u.dimension() as usize, self.place.len());
-        let jacobian = if read < axes {
+        let jacobian = if u.is_behind() {
+            let (read, axes) = (u.dimension() as usize, self.place.len());
             self.hits[place * axes..][read..axes].fill(UNREAD);
             self.weight(place, read)
         } else {
@@ -154,11 +153,10 @@ impl<I: Integrand> Visitor for Learner<'_, I> {
 
     #[inline]
     fn leave(&mut self) {
-        let axes = self.place.len().max(1);
-        for (axis, squares) in self.squares.chunks_exact_mut(self.number).enumerate() {
-            let hits = self.hits[axis..].iter().step_by(axes);
-            for (&hit, square) in hits.zip(&self.given) {
-                if let Some(squares) = squares.get_mut(hit as usize) {
+        let points = self.hits.chunks_exact(self.place.len().max(1));
+        for (hits, square) in points.zip(&self.given) {
+            for &hit in hits {
+                if let Some(squares) = self.squares.get_mut(hit as usize) {
                     squares.sum += square;
                     squares.count += 1.0;
                 }

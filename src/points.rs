@@ -95,6 +95,7 @@ pub use multi_jittered::MultiJittered;
 pub use n_rooks::NRooks;
 pub use orthogonal_array::OrthogonalArray;
 pub use padded::Padded;
+pub(crate) use permutation::permuted;
 pub use radical_inverse::radical_inverse;
 pub use rescrambled::Rescrambled;
 pub use scramble::{

@@ -1,5 +1,6 @@
 //! Random permutations of many numbers at once.
 
+use super::block::vectorised;
 use super::finite::CHUNK;
 use crate::hash::{Bijection, FEW, ROUNDS, permute};
 
@@ -54,6 +55,32 @@ impl Permutation {
             }
         }
     }
+}
+
+/// The images of all numbers below `count` under the random permutation that [`permute`] makes of `key`.
+///
+/// # Panics
+///
+/// For a count above 2^32.
+#[expect(clippy::cast_possible_truncation, reason = "below 2^32")]
+pub(crate) fn permuted(count: u64, key: u64) -> Vec<u32> {
+    assert!(count <= 1 << 32, "permuted: the count is 2^32 at most");
+    let mut images = Vec::new();
+    if count == 0 {
+        return images;
+    }
+    let last = (count - 1) as u32;
+    vectorised(|| {
+        let permutation = Permutation::new(count, key);
+        for first in (0..count).step_by(CHUNK) {
+            let number = |lane: usize| (first + lane as u64).min(last.into()) as u32;
+            let mut chunk = core::array::from_fn(number);
+            permutation.apply(&mut chunk);
+            let here = (count - first).min(CHUNK as u64) as usize;
+            images.extend_from_slice(&chunk[..here]);
+        }
+    });
+    images
 }
 
 /// Takes the numbers past the count on along their cycles, until all are below it.
@@ -136,6 +163,15 @@ impl Walk {
 mod tests {
     use super::*;
     use crate::hash::hash;
+
+    #[test]
+    fn all_are_permuted_as_each_is() {
+        for count in [0, 1, 16, 17, 100, 3125] {
+            let images = permuted(count, 7);
+            let each = (0..count).map(|number| permute(number, count, 7));
+            assert!(images.into_iter().map(u64::from).eq(each), "{count}");
+        }
+    }
 
     #[test]
     fn many_are_permuted_as_one_is() {

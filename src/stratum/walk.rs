@@ -3,8 +3,8 @@
 use core::ops::Range;
 
 use super::{Stratum, Visited};
-use crate::points::{Independent, PointSet};
-use crate::{Cursor, Error, NonFinite, Value, hash, reduce};
+use crate::points::{Independent, PointSet, permuted};
+use crate::{Cursor, Error, NonFinite, Value, reduce};
 
 /// So many points in each stratum, one stratum after the other, in parts that can be evaluated side by side.
 ///
@@ -26,11 +26,7 @@ const SHORTEST: u64 = 256;
 impl Walk {
     /// `counts[k]` points in stratum `k`, in an order that `key` selects; no part is longer than about `longest`.
     pub(crate) fn new(counts: &[u64], key: u64, longest: u64) -> Self {
-        let strata = counts.len() as u64;
-        #[expect(clippy::cast_possible_truncation, reason = "strata are in memory")]
-        let order: Vec<u32> = (0..strata)
-            .map(|visit| hash::permute(visit, strata, key) as u32)
-            .collect();
+        let order = permuted(counts.len() as u64, key);
         let mut end = 0;
         let ends = order.iter().map(|&stratum| {
             end += counts[stratum as usize];

@@ -1,7 +1,7 @@
 //! An integrand under a map, and where its squares are.
 
 use super::adaptation::Adaptation;
-use super::grid::{Axis, Grid};
+use super::grid::{Axis, enter};
 use crate::evaluate::Wide;
 use crate::integrands::Bin;
 use crate::points::Independent;
@@ -38,7 +38,6 @@ pub(super) struct Learner<'a, I: Integrand> {
     bins: &'a [Bin],
     /// How many bins an axis has.
     number: usize,
-    strata: &'a Grid,
     place: Vec<Axis>,
     /// The reciprocal scale of each component.
     scale: Wide<I>,
@@ -63,7 +62,6 @@ impl<'a, I: Integrand> Learner<'a, I> {
             integrand,
             bins,
             number: map.bins(),
-            strata,
             place: strata.axes(map.bins()),
             scale: adaptation.scale.map(|scale| {
                 if scale > 0.0 {
@@ -94,7 +92,7 @@ impl<I: Integrand> Visitor for Learner<'_, I> {
     type Value = Wide<I>;
 
     fn enter(&mut self, stratum: usize) {
-        self.strata.enter(stratum, &mut self.place);
+        enter(stratum, &mut self.place);
     }
 
     fn begin(&mut self, number: usize) {

@@ -110,14 +110,14 @@ impl<P: PointSet> Ahead<P> {
     }
 }
 
-/// VEGAS by hand, as far as its loop goes: bins and strata as the library has them for this count, but as many points in
-/// each stratum.
+/// VEGAS by hand, as far as its loop goes: bins and strata as the library has them for this count, with more points in strata
+/// that vary more.
 fn vegas_by_hand(count: u64) -> [f64; 2] {
     const BINS: usize = 161;
     const SIDE: u64 = 5;
     const ITERATIONS: u64 = 10;
     let strata = SIDE.pow(5);
-    let each = count / ITERATIONS / strata;
+    let mut counts = vec![count / ITERATIONS / strata; strata as usize];
     let mut ends = [[0.0; BINS + 1]; DIMENSIONS];
     for axis in &mut ends {
         for (place, end) in axis.iter_mut().enumerate() {
@@ -130,15 +130,16 @@ fn vegas_by_hand(count: u64) -> [f64; 2] {
         let mut hits = [[0.0; BINS]; DIMENSIONS];
         let mut ahead = Ahead::new(Independent::new(hash(1, iteration)));
         let (mut mean, mut errors) = (0.0, 0.0);
-        for stratum in 0..strata {
-            let mut rest = stratum;
+        let mut scores = Vec::with_capacity(counts.len());
+        let mut first = 0;
+        for (mut rest, &each) in (0..).zip(&counts) {
             let corner: [f64; DIMENSIONS] = std::array::from_fn(|_| {
                 let place = rest % SIDE;
                 rest /= SIDE;
                 place as f64
             });
             let [here, error] = by_hand(each, |index| {
-                let mut x = ahead.point(stratum * each + index);
+                let mut x = ahead.point(first + index);
                 let mut bins = [0; DIMENSIONS];
                 let mut jacobian = 1.0;
                 for axis in 0..DIMENSIONS {
@@ -158,6 +159,17 @@ fn vegas_by_hand(count: u64) -> [f64; 2] {
             });
             mean += here;
             errors += error * error;
+            scores.push((error * error * each as f64).powf(0.375));
+            first += each;
+        }
+        let sum: f64 = scores.iter().sum();
+        let free = (count / ITERATIONS - 2 * strata) as f64;
+        let (mut share, mut given) = (0.0, 0);
+        for (count, score) in counts.iter_mut().zip(&scores) {
+            share += 0.2 / strata as f64 + 0.8 * score / sum;
+            let end = (share * free) as u64;
+            *count = 2 + end - given;
+            given = end;
         }
         all += mean / strata as f64;
         variance += errors / (strata * strata) as f64;

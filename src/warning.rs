@@ -15,10 +15,16 @@ pub enum Warning {
     /// or all points missed what matters.
     NoSpread,
     /// A single value makes up a large share of the variance, as it does when the integrand is a narrow peak, a
-    /// rare event or has no variance at all; or one of each replicate makes up most of the variance between them, as it does
-    /// where points that are even meet a singularity. The error may be many times the error bar.
+    /// rare event or has no variance at all. The error may be many times the error bar.
     FewValues {
-        /// The largest share of one value in the sum of squared deviations, or of one of each replicate in that of their means.
+        /// The largest share of one value in the sum of squared deviations.
+        share: f64,
+    },
+    /// One value of each replicate, its largest or its smallest, makes up most of the variance between them, as it does where
+    /// points that are even meet a singularity. The means of the replicates are then as skewed as single values, whatever the number
+    /// of points: intervals hold the integral less often than they claim.
+    Singular {
+        /// The share of that value.
         share: f64,
     },
     /// Most strata show no variance, and what there is comes from a few of them, as it does in the search for a narrow peak or a
@@ -92,6 +98,12 @@ impl fmt::Display for Warning {
             Self::FewValues { share } => write!(
                 f,
                 "one value makes up {:.0} % of the variance: the error may be far above the error bar",
+                100.0 * share
+            ),
+            Self::Singular { share } => write!(
+                f,
+                "one value of each replicate makes up {:.0} % of the variance between them, as at a singularity: \
+                 intervals hold less often than they claim",
                 100.0 * share
             ),
             Self::FewStrata { deciding } => write!(

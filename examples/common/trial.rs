@@ -151,6 +151,7 @@ fn name(warning: Warning) -> &'static str {
     match warning {
         Warning::NoSpread => "all values alike",
         Warning::FewValues { .. } => "few values decide",
+        Warning::Singular { .. } => "one value a replicate",
         Warning::FewStrata { .. } => "few strata decide",
         Warning::HeavyTail { .. } => "heavy tail",
         Warning::SmallSample { .. } => "small sample",

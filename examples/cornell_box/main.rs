@@ -2,6 +2,8 @@
 
 mod measure;
 mod plot;
+#[path = "../common/pixel_points.rs"]
+#[allow(dead_code, reason = "shared with the other programs")]
 mod points;
 
 use std::error::Error;

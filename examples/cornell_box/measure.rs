@@ -193,7 +193,7 @@ impl<'a> Meter<'a> {
             };
             let started = Instant::now();
             let seed = hash(self.seed, repetitions);
-            let image = points.render(self.room, self.size, spp, seed, proceed)?;
+            let image = points.render_while(self.room, self.size, spp, seed, proceed)?;
             let time = started.elapsed();
             if self.stop.load(Ordering::Relaxed) {
                 match first {

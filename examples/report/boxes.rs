@@ -121,7 +121,7 @@ fn study<B: Bsdf, L: Light, E: Environment, C: Sensor>(
         .shortest(effort.shortest)
         .pictures(reference);
     for points in Points::ALL {
-        study = study.method(points.name(), move |spp, seed| {
+        study = study.method(points.title(), move |spp, seed| {
             points.render(view, effort.small, spp, seed)
         });
     }

@@ -14,6 +14,8 @@ mod lecture;
 mod methods;
 mod peers;
 mod pictures;
+#[path = "../common/pixel_points.rs"]
+#[allow(dead_code, reason = "shared with the other programs")]
 mod points;
 mod scalars;
 mod setup;

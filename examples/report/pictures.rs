@@ -47,7 +47,7 @@ pub(crate) fn add(report: &mut Report) -> Result<(), Failure> {
     for points in Points::ALL {
         let view = &view;
         let render = move |spp, seed| points.render(view, size, spp, seed);
-        methods.push((points.name(), Box::new(render)));
+        methods.push((points.title(), Box::new(render)));
     }
     methods.push((
         "branching: 4 rays a surface",

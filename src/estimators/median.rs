@@ -14,7 +14,7 @@ use crate::{Error, ErrorBar, Estimate, NonFinite, Value, Warning};
 /// Nets under a random linear matrix scramble are now and then much worse than usual, and otherwise better than any
 /// rate that their mean reaches: the median profits, for smooth integrands.[^pan] Under nested scrambling it does not
 /// help. The median is biased where the averages are not symmetric about the integral, as for rare events, of which
-/// [`Warning::FewValues`] and [`Warning::Tied`] tell: use the mean there.
+/// [`Warning::FewValues`], [`Warning::Singular`] and [`Warning::Tied`] tell: use the mean there.
 ///
 /// The interval lies between order statistics of the replicates, and holds the median of their distribution at any
 /// number of them. It takes 6 replicates for 95 %, 8 for 99 %.

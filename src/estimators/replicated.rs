@@ -120,24 +120,22 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Replicated<F> {
         // Replicates that were cut short are worth less than the others: they count only if they are all there
         // is.
         let most = tallies.iter().map(Tally::used).max()?;
-        let whole: Vec<&Tally<V>> = tallies
-            .iter()
-            .filter(|tally| tally.used() == most && tally.moments().count() > 0)
+        let whole = tallies.iter().filter(|tally| tally.used() == most);
+        // Those of which every value was left out have no mean.
+        let known: Vec<&Tally<V>> = whole
+            .clone()
+            .filter(|tally| tally.moments().count() > 0)
             .collect();
-        let means: Vec<V> = whole.iter().map(|tally| tally.moments().mean()).collect();
+        let means: Vec<V> = known.iter().map(|tally| tally.moments().mean()).collect();
         if means.is_empty() {
             return None;
         }
         let moments: Moments<V> = means.iter().copied().collect();
         let mut all = Tally::EMPTY;
-        whole.iter().for_each(|tally| all.merge(tally));
+        whole.for_each(|tally| all.merge(tally));
         let std_error = moments.std_error();
         let mut warnings = diagnose(&all, std_error);
-        if let Some(few) = decided(&whole) {
-            // It says more than a share among all values.
-            warnings.retain(|warning| !matches!(warning, Warning::FewValues { .. }));
-            warnings.push(few);
-        }
+        warnings.extend(singular(&known, moments.root()));
         warnings.extend(Warning::of_replicates(moments.count()));
         warnings.extend(Warning::of_rejected(all.rejected()));
         let set = (self.points)(hash::hash(self.seed, 0));
@@ -156,39 +154,42 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Replicated<F> {
 
 tallied!([P: PointSet, F: Fn(u64) -> P] Replicated<F>);
 
-/// Warns where one value of each replicate, its largest or its smallest, makes up most of the variance between them, in some
-/// component.
+/// Warns where one value of each replicate makes up most of the variance between them, in some component. `root` is that of the sum of
+/// squared deviations of their means.
 ///
-/// So it is at a singularity: the other points of a replicate are even, and its mean follows the point closest to it. That has the
-/// distribution of a single value, far from a normal one, whatever the number of points.
-fn decided<V: Value>(replicates: &[&Tally<V>]) -> Option<Warning> {
+/// At a singularity the other points of a replicate are even, and its mean follows the point closest to it.
+fn singular<V: Value>(replicates: &[&Tally<V>], root: V) -> Option<Warning> {
     /// Of so few points one may make up a large share without that.
-    const FEW: u64 = 16;
+    const POINTS: u64 = 16;
+    /// So few replicates may show a large share by chance.
+    const REPLICATES: usize = 8;
     /// The share of singularities is almost 1; that of others, known from few replicates, may come out as a half.
     const MOST: f64 = 0.8;
-    if replicates.first()?.moments().count() < FEW {
+    let few = |tally: &&Tally<V>| tally.moments().count() < POINTS;
+    if replicates.len() < REPLICATES || replicates.iter().any(few) {
         return None;
     }
-    let spread = |rest: &dyn Fn(&Tally<V>) -> V| {
-        let means: Moments<V> = replicates.iter().map(|tally| rest(tally)).collect();
-        means.root()
+    let without = |value: fn(&Tally<V>) -> V| {
+        let rest: Moments<V> = replicates
+            .iter()
+            .map(|tally| {
+                let weight = 1.0 / tally.moments().count() as f64;
+                let mean = tally.moments().mean();
+                mean.zip(value(tally), |mean, value| mean - weight * value)
+            })
+            .collect();
+        rest.root()
     };
-    let without = |tally: &Tally<V>, value: V| {
-        let weight = 1.0 / tally.moments().count() as f64;
-        let mean = tally.moments().mean();
-        mean.zip(value, |mean, value| mean - weight * value)
-    };
-    let all = spread(&|tally| tally.moments().mean());
-    let highest = spread(&|tally| without(tally, tally.highest()[0]));
-    let lowest = spread(&|tally| without(tally, tally.lowest()[0].map(|low| -low)));
+    let highest = without(|tally| tally.highest()[0]);
+    let lowest = without(|tally| tally.lowest()[0].map(|low| -low));
     let mut share = 0.0_f64;
-    let _ = all.zip(highest.zip(lowest, f64::min), |all, rest| {
+    let _ = root.zip(highest.zip(lowest, f64::min), |all, rest| {
         if all > 0.0 {
             share = share.max(1.0 - (rest / all).powi(2));
         }
         0.0
     });
-    (share > MOST).then_some(Warning::FewValues { share })
+    (share > MOST).then_some(Warning::Singular { share })
 }
 
 /// More sets than this are an argument gone wrong, not a plan.
@@ -248,49 +249,70 @@ impl<F> fmt::Debug for Replicated<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::points::{HashedOwen, Independent, LinearMatrix, Sobol};
-    use crate::{Estimator, cube};
+    use crate::points::{DigitalShift, HashedOwen, Independent, Sobol};
+    use crate::{Estimator, Integrand, cube};
 
-    fn share(estimate: &Estimate<f64>) -> Option<f64> {
-        estimate.warnings.iter().find_map(|warning| match warning {
-            Warning::FewValues { share } => Some(*share),
+    fn share(replicates: u64, count: u64, seed: u64, f: &impl Integrand) -> Option<f64> {
+        let sobol = Sobol::new(1).unwrap();
+        let set = |seed| sobol.clone().scrambled(HashedOwen { seed });
+        let replicated = Replicated::new(replicates, count, set).seed(seed);
+        share_of(&replicated.estimate(f).unwrap().warnings)
+    }
+
+    fn share_of(warnings: &[Warning]) -> Option<f64> {
+        warnings.iter().find_map(|warning| match warning {
+            Warning::Singular { share } => Some(*share),
             _ => None,
         })
     }
 
     /// The point closest to zero is uniform in the first of `n` cells, so that the mean varies by `n^-0.6` times what `u^-0.4` does,
-    /// which is `1/0.2 - 1/0.6^2 = 2.22`; the cells after it add `(i + u)^-0.4`, together 0.02. The largest value has 99 %.
+    /// which is `1/0.2 - 1/0.6^2 = 2.22`; the cells after it add `(i + u)^-0.4`, together 0.007. The largest value has 99.7 %.
     #[test]
-    fn a_singularity_decides() {
-        let f = cube(|[x]: [f64; 1]| x.powf(-0.4));
-        let sobol = Sobol::new(1).unwrap();
+    fn a_singularity_is_told_of_in_any_component() {
+        let singular = cube(|[x]: [f64; 1]| x.powf(-0.4));
+        let below = cube(|[x]: [f64; 1]| [1.0, -x.powf(-0.4)]);
+        let smooth = cube(|[x]: [f64; 1]| [x.exp(), 1.0]);
         for seed in 0..50 {
-            let set = |seed| sobol.clone().scrambled(HashedOwen { seed });
-            let estimate = Replicated::new(16, 1 << 12, set).seed(seed).estimate(&f);
-            let share = share(&estimate.unwrap());
-            assert!(share.is_some_and(|share| share > 0.8), "{seed}: {share:?}");
+            for share in [
+                share(16, 1 << 12, seed, &singular),
+                share(16, 1 << 12, seed, &below),
+            ] {
+                assert!(share.is_some_and(|share| share > 0.9), "{seed}: {share:?}");
+            }
+            assert_eq!(share(16, 1 << 12, seed, &smooth), None, "{seed}");
+            // Of few points, or few replicates, nothing is said.
+            assert_eq!(share(16, 15, seed, &singular), None, "{seed}");
+            assert_eq!(share(7, 1 << 12, seed, &singular), None, "{seed}");
         }
     }
 
-    /// Under one shift of all points the largest value says what the mean is, and yet it is one of many that do.
+    /// Under one shift of all digits every point has the same place in its cell: the largest value says what the mean is, and yet
+    /// it is one of many that do.
     #[test]
     fn points_that_move_together_decide_together() {
         let f = cube(|[x]: [f64; 1]| x.exp());
         let sobol = Sobol::new(1).unwrap();
         for seed in 0..50 {
-            let set = |seed| sobol.clone().scrambled(LinearMatrix { seed });
-            let estimate = Replicated::new(16, 1 << 10, set).seed(seed).estimate(&f);
-            assert_eq!(share(&estimate.unwrap()), None, "{seed}");
+            let set = |seed| sobol.clone().scrambled(DigitalShift { seed });
+            let replicated = Replicated::new(16, 1 << 10, set).seed(seed);
+            let warnings = replicated.estimate(&f).unwrap().warnings;
+            assert_eq!(share_of(&warnings), None, "{seed}");
         }
     }
 
-    /// Of one point a replicate that point is everything.
     #[test]
-    fn of_few_points_one_may_have_a_large_share() {
-        let f = cube(|[x]: [f64; 1]| x);
-        for count in 1..4 {
-            let estimate = Replicated::new(400, count, Independent::new).estimate(&f);
-            assert_eq!(share(&estimate.unwrap()), None);
-        }
+    fn replicates_without_a_value_are_counted_all_the_same() {
+        let f = cube(|[x]: [f64; 1]| if x < 0.5 { f64::NAN } else { x });
+        let estimate = Replicated::new(400, 1, Independent::new)
+            .non_finite(NonFinite::Reject)
+            .estimate(&f)
+            .unwrap();
+        assert_eq!(estimate.used, 400);
+        // Half of them, to five standard deviations.
+        assert!((150..250).contains(&estimate.rejected));
+        assert_eq!(estimate.replicates.len() as u64, 400 - estimate.rejected);
+        let rejected = estimate.rejected;
+        assert!(estimate.warnings.contains(&Warning::Rejected { rejected }));
     }
 }

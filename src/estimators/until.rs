@@ -22,7 +22,7 @@ use crate::{
 /// The error is looked at after [`least`](Self::least) evaluations and then each time that their number has about doubled,
 /// so that few looks give few chances to stop by luck; the level is that of each look. An error bar of zero,
 /// or one that hangs on a few values ([`Warning::FewValues`]) or strata ([`Warning::FewStrata`]), meets no tolerance: a rare event that was not
-/// seen yet looks like that.
+/// seen yet looks like that. At a singularity ([`Warning::Singular`]) it may be met by an interval that holds less often than it claims.
 ///
 /// # Time and callback
 ///

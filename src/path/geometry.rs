@@ -80,17 +80,15 @@ impl Geometry {
         meshes: Vec<Mesh>,
         copies: Vec<Copied>,
     ) -> Self {
+        let (soup, copies) = (Soup::new(meshes), Copies::new(copies));
+        let soups = soup.iter().map(Soup::bounds);
+        let others: Vec<_> = soups.chain(copies.iter().map(Copies::bounds)).collect();
         let search = if shapes.len() <= FEW {
-            Search::Sweep(Sweep::new(&shapes))
+            Search::Sweep(Sweep::new(&shapes, &others))
         } else {
             Search::Tree(Tree::new(&shapes))
         };
-        let (soup, copies) = (Soup::new(meshes), Copies::new(copies));
-        let bounds = around(
-            (shapes.iter().map(Shape::bounds))
-                .chain(soup.iter().map(Soup::bounds))
-                .chain(copies.iter().map(Copies::bounds)),
-        );
+        let bounds = around(shapes.iter().map(Shape::bounds).chain(others));
         Self {
             shapes,
             search,
@@ -179,18 +177,17 @@ impl Geometry {
     /// Whether a flat shape can be in the way between two points of the scene.
     #[cfg(feature = "simd")]
     pub(in crate::path) fn divides(&self, flat: &Flat) -> bool {
-        kind::divides(flat, &self.shapes)
+        kind::divides(flat, &self.shapes, &[])
     }
 
     /// Whether any shape is in the way from one point of the scene to another, at `limit`.
     #[inline]
     pub(in crate::path) fn divided(&self, ray: &Ray, limit: f32) -> bool {
-        match &self.search {
-            Search::Sweep(sweep) if self.soup.is_none() && self.copies.is_none() => {
-                sweep.divided(ray, limit)
-            }
-            _ => self.occluded(ray, limit),
-        }
+        let shapes = match &self.search {
+            Search::Sweep(sweep) => sweep.divided(ray, limit),
+            Search::Tree(tree) => tree.occluded(&self.shapes, ray, limit),
+        };
+        shapes || self.occluded_by_others(ray, limit)
     }
 
     /// Whether the ray meets any shape nearer than `limit`.
@@ -200,8 +197,13 @@ impl Geometry {
             Search::Sweep(sweep) => sweep.occluded(ray, limit),
             Search::Tree(tree) => tree.occluded(&self.shapes, ray, limit),
         };
+        shapes || self.occluded_by_others(ray, limit)
+    }
+
+    #[inline]
+    fn occluded_by_others(&self, ray: &Ray, limit: f32) -> bool {
         let soup = |soup: &Soup| soup.occluded(ray, limit);
         let copies = |copies: &Copies| copies.occluded(ray, limit);
-        shapes || self.soup.as_ref().is_some_and(soup) || self.copies.as_ref().is_some_and(copies)
+        self.soup.as_ref().is_some_and(soup) || self.copies.as_ref().is_some_and(copies)
     }
 }

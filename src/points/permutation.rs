@@ -65,21 +65,24 @@ impl Permutation {
 #[expect(clippy::cast_possible_truncation, reason = "below 2^32")]
 pub(crate) fn permuted(count: u64, key: u64) -> Vec<u32> {
     assert!(count <= 1 << 32, "permuted: the count is 2^32 at most");
-    let mut images = Vec::new();
+    let mut images = Vec::with_capacity(count as usize);
     if count == 0 {
         return images;
     }
     let last = (count - 1) as u32;
-    vectorised(|| {
-        let permutation = Permutation::new(count, key);
-        for first in (0..count).step_by(CHUNK) {
-            let number = |lane: usize| (first + lane as u64).min(last.into()) as u32;
-            let mut chunk = core::array::from_fn(number);
-            permutation.apply(&mut chunk);
-            let here = (count - first).min(CHUNK as u64) as usize;
-            images.extend_from_slice(&chunk[..here]);
-        }
-    });
+    vectorised(
+        #[inline(always)]
+        || {
+            let permutation = Permutation::new(count, key);
+            for first in (0..count).step_by(CHUNK) {
+                let number = |lane: usize| (first + lane as u64).min(last.into()) as u32;
+                let mut chunk = core::array::from_fn(number);
+                permutation.apply(&mut chunk);
+                let here = (count - first).min(CHUNK as u64) as usize;
+                images.extend_from_slice(&chunk[..here]);
+            }
+        },
+    );
     images
 }
 
@@ -166,10 +169,12 @@ mod tests {
 
     #[test]
     fn all_are_permuted_as_each_is() {
-        for count in [0, 1, 16, 17, 100, 3125] {
-            let images = permuted(count, 7);
-            let each = (0..count).map(|number| permute(number, count, 7));
-            assert!(images.into_iter().map(u64::from).eq(each), "{count}");
+        for count in [0, 1, 16, 17, 64, 100, 128, 3125] {
+            for key in 0..5 {
+                let images = permuted(count, key);
+                let each = (0..count).map(|number| permute(number, count, key));
+                assert!(images.into_iter().map(u64::from).eq(each), "{count}");
+            }
         }
     }
 

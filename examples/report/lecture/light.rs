@@ -295,7 +295,7 @@ fn sets(studio: &Studio<'_>) -> Result<Vec<Claim>, Failure> {
     let view = scenes::cornell_box();
     let size = studio.report.effort.claim;
     let mut measured = Vec::new();
-    for points in [Points::Plain, Points::Stratified, Points::Sobol] {
+    for points in [Points::MonteCarlo, Points::Stratified, Points::Sobol] {
         measured.push(studio.measure(|seed| points.render(&view, size, SPP, seed))?);
     }
     let [plain, stratified, sobol] = &measured[..] else {

@@ -60,8 +60,8 @@ impl Grid {
 /// Goes to the place of `stratum`.
 #[inline]
 pub(super) fn enter(stratum: usize, place: &mut [Axis]) {
-    // A machine takes many times as long to divide as to multiply. There are 2^16 strata at most: rounding is far below the half of
-    // a cell that makes quotients safe from it.
+    // A machine takes many times as long to divide as to multiply. With a half added, a quotient is at least 2^-17 from any whole
+    // number, since there are 2^16 strata at most; rounding is below 2^-35.
     let mut rest = stratum as f64;
     for axis in place {
         #[expect(clippy::cast_possible_truncation, reason = "rounds down")]
@@ -109,6 +109,12 @@ mod tests {
             assert_eq!(grid.cells, cells);
             assert_eq!(grid.strata as u64, cells.iter().product::<u64>());
             let mut axes = grid.axes(5);
+            assert!(
+                (0..)
+                    .step_by(5)
+                    .zip(&axes)
+                    .all(|(first, axis)| axis.first == first)
+            );
             let places: std::collections::BTreeSet<Vec<u64>> = (0..grid.strata)
                 .map(|stratum| {
                     enter(stratum, &mut axes);

@@ -1,6 +1,6 @@
 //! Eight spheres at once.
 
-use super::flats::{LANES, Lanes};
+use super::flats::{self, LANES, Lanes};
 use crate::path::shape::Sphere;
 
 /// Eight spheres, one a lane. An empty lane has no real radius: no ray meets it.
@@ -18,19 +18,13 @@ impl Balls {
 
     /// Blocks of the given spheres in their order.
     pub(super) fn blocks<'a>(spheres: impl Iterator<Item = &'a Sphere>) -> Vec<Self> {
-        let mut blocks = Vec::new();
-        for (place, sphere) in spheres.enumerate() {
-            let lane = place % LANES;
-            if lane == 0 {
-                blocks.push(Self::EMPTY);
-            }
-            if let Some(block) = blocks.last_mut() {
-                for axis in 0..3 {
-                    block.center[axis][lane] = sphere.center()[axis];
-                }
-                block.squared_radius[lane] = sphere.squared_radius();
-            }
+        flats::blocks(spheres, Self::EMPTY, Self::set)
+    }
+
+    fn set(&mut self, lane: usize, sphere: &Sphere) {
+        for axis in 0..3 {
+            self.center[axis][lane] = sphere.center()[axis];
         }
-        blocks
+        self.squared_radius[lane] = sphere.squared_radius();
     }
 }

@@ -23,6 +23,25 @@ pub(super) fn word(bits: Bits) -> u32 {
     bits.iter().fold(0, |word, bit| word | bit)
 }
 
+/// Blocks of the given shapes in their order: `set` puts a shape into a lane of a block that is `empty` at first.
+pub(super) fn blocks<'a, B: Copy, S: 'a>(
+    shapes: impl Iterator<Item = &'a S>,
+    empty: B,
+    set: impl Fn(&mut B, usize, &S),
+) -> Vec<B> {
+    let mut blocks = Vec::new();
+    for (place, shape) in shapes.enumerate() {
+        let lane = place % LANES;
+        if lane == 0 {
+            blocks.push(empty);
+        }
+        if let Some(block) = blocks.last_mut() {
+            set(block, lane, shape);
+        }
+    }
+    blocks
+}
+
 /// Eight flat shapes, one a lane. An empty lane is all zeros: a ray's distance to it is NaN, no hit.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Flats {
@@ -37,17 +56,7 @@ pub(super) struct Flats {
 impl Flats {
     /// Blocks of the given shapes in their order.
     pub(super) fn blocks<'a>(shapes: impl Iterator<Item = &'a Flat>) -> Vec<Self> {
-        let mut blocks = Vec::new();
-        for (place, flat) in shapes.enumerate() {
-            let lane = place % LANES;
-            if lane == 0 {
-                blocks.push(Self::default());
-            }
-            if let Some(block) = blocks.last_mut() {
-                block.set(lane, flat);
-            }
-        }
-        blocks
+        blocks(shapes, Self::default(), Self::set)
     }
 
     fn set(&mut self, lane: usize, flat: &Flat) {

@@ -1,5 +1,7 @@
 //! A sweep over few shapes, eight flat ones or eight spheres at a time.
 
+use glam::Vec3A;
+
 use super::Found;
 use super::balls::Balls;
 use super::flats::{Flats, LANES};
@@ -14,7 +16,7 @@ use crate::path::shape::{Primitive, Shape};
 #[derive(Debug)]
 pub(in crate::path) struct Sweep {
     flats: Vec<Flats>,
-    /// Those of them that can be between two points of the scene, if the shapes are all there is.
+    /// Those of them that can be between two points of the scene.
     dividing: Vec<Flats>,
     /// Which shape each of the flats is: those of simple equations come first.
     pub(in crate::path) flat_shapes: Vec<usize>,
@@ -28,7 +30,8 @@ pub(in crate::path) struct Sweep {
 }
 
 impl Sweep {
-    pub(super) fn new(shapes: &[Primitive]) -> Self {
+    /// The sweep over `shapes`, in a scene of them and of what is in `boxes`.
+    pub(super) fn new(shapes: &[Primitive], boxes: &[[Vec3A; 2]]) -> Self {
         let (mut flats, mut balls, mut others) = (Vec::new(), Vec::new(), Vec::new());
         for (index, shape) in shapes.iter().enumerate() {
             match shape {
@@ -39,7 +42,7 @@ impl Sweep {
         }
         flats.sort_by_key(|(_, flat)| Kind::of(flat));
         let in_order = flats.iter().map(|&(_, flat)| flat);
-        let dividing = in_order.clone().filter(|flat| divides(flat, shapes));
+        let dividing = in_order.clone().filter(|flat| divides(flat, shapes, boxes));
         Self {
             flats: Flats::blocks(in_order.clone()),
             dividing: Flats::blocks(dividing),

@@ -207,7 +207,7 @@ impl Tree {
         leaves: &mut impl Leaves,
     ) -> Option<Found> {
         let mut nearest = None;
-        let mut stack = Stack::EMPTY;
+        let mut stack = Stack::new();
         let mut next = Some(Child::ROOT);
         while let Some(child) = next {
             let index = child.index();
@@ -234,7 +234,7 @@ impl Tree {
 
     #[inline(always)]
     fn walk_to_any(&self, probe: &impl Probe, limit: f32, leaves: &mut impl Leaves) -> bool {
-        let mut stack = Stack::EMPTY;
+        let mut stack = Stack::new();
         let mut next = Some(Child::ROOT);
         while let Some(child) = next {
             let index = child.index();

@@ -1,14 +1,16 @@
-//! The point sets to compare, each randomised anew in every pixel.
+//! The point sets that pictures are compared by, each randomised anew in every pixel.
 
 use clap::ValueEnum;
-use estimand::path::{Image, Unfinished};
+use estimand::path::bsdf::Bsdf;
+use estimand::path::filter::Filter;
+use estimand::path::light::{Environment, Light};
+use estimand::path::sensor::Sensor;
+use estimand::path::{Image, Unfinished, View};
 use estimand::points::{Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Sobol, Stratified};
 use estimand::{Average, MonteCarlo, hash};
 
-use crate::measure::Room;
-
 /// A point set.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Points {
     /// Independent points: plain Monte Carlo
     MonteCarlo,
@@ -30,6 +32,8 @@ type Randomised<'a> = &'a (dyn Fn(u64) -> Box<dyn PointSet> + Sync);
 /// Dimensions of the sets: those of the paths that matter. Longer ones go on with independent coordinates.
 const DIMENSIONS: u32 = 32;
 
+const VALID: &str = "the count is positive, the dimensions are few, the offset is a fraction";
+
 impl Points {
     pub(crate) const ALL: [Self; 6] = [
         Self::MonteCarlo,
@@ -40,6 +44,7 @@ impl Points {
         Self::Sobol,
     ];
 
+    /// The name on the command line.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::MonteCarlo => "monte-carlo",
@@ -50,13 +55,34 @@ impl Points {
             Self::Sobol => "sobol",
         }
     }
-}
 
-impl Points {
-    /// The picture, as [`View::render_while`](estimand::path::View::render_while).
-    pub(crate) fn render(
+    /// The name in a text.
+    pub(crate) fn title(self) -> &'static str {
+        match self {
+            Self::MonteCarlo => "plain Monte Carlo",
+            Self::Stratified => "stratified",
+            Self::NRooks => "N-rooks",
+            Self::Halton => "Halton, Owen",
+            Self::Hammersley => "Hammersley, Owen",
+            Self::Sobol => "Sobol', hashed Owen",
+        }
+    }
+
+    /// A square picture with about `spp` samples a pixel.
+    pub(crate) fn render<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter>(
         self,
-        room: &Room,
+        view: &View<B, L, E, C, F>,
+        size: u32,
+        spp: u64,
+        seed: u64,
+    ) -> Result<Image, Unfinished> {
+        self.render_while(view, size, spp, seed, |_| true)
+    }
+
+    /// The same, as [`View::render_while`].
+    pub(crate) fn render_while<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter>(
+        self,
+        view: &View<B, L, E, C, F>,
         size: u32,
         spp: u64,
         seed: u64,
@@ -64,11 +90,12 @@ impl Points {
     ) -> Result<Image, Unfinished> {
         let size = [size; 2];
         let average = |points: Randomised<'_>| {
-            room.render_while(size, seed, |key| Average::new(points(key), spp), &proceed)
+            let estimator = |key| Average::new(points(key), spp);
+            view.render_while(size, seed, estimator, &proceed)
         };
         match self {
             Self::MonteCarlo => {
-                room.render_while(size, seed, |key| MonteCarlo::new(spp, key), &proceed)
+                view.render_while(size, seed, |key| MonteCarlo::new(spp, key), &proceed)
             }
             Self::Stratified => {
                 average(&|key| Box::new(Stratified::new(spp, 2, key).expect(VALID)))
@@ -93,5 +120,3 @@ impl Points {
         }
     }
 }
-
-const VALID: &str = "the count is positive, the dimensions are few, the offset is a fraction";

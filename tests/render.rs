@@ -14,9 +14,7 @@ use estimand::path::light::{AreaLights, Environment, Light, NoEnvironment};
 use estimand::path::scenes::{self, CORNELL_LIGHT};
 use estimand::path::sensor::{Pinhole, Sensor};
 use estimand::path::{Adaptive, Direct, Ending, Image, Recursive, View};
-use estimand::points::{
-    DigitPermutation, Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Sobol, Stratified,
-};
+use estimand::points::{Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Sobol, Stratified};
 use estimand::{Average, Estimator, MonteCarlo};
 
 fn reference(name: &'static str, size: usize, samples: u64) -> Reference {
@@ -93,7 +91,7 @@ fn cornell_box_of_eight_segments() {
     let hammersley = Hammersley::new(8, 32).unwrap();
     check("hammersley", 8, 12, &|seed| {
         let points = hammersley.clone().offset(unit(hash(seed, 0))).unwrap();
-        Box::new(points.scrambled(DigitPermutation { seed }))
+        Box::new(points.scrambled(Owen { seed }))
     });
     let sobol = Sobol::new(32).unwrap();
     check("sobol", 8, 5, &|seed| {

@@ -96,7 +96,7 @@ impl<I: Integrand> Visitor for Learner<'_, I> {
     }
 
     fn begin(&mut self, number: usize) {
-        self.jacobians.clear();
+        // Placing the points writes them, but for points without axes.
         self.jacobians.resize(number, 1.0);
         self.given.resize(number, 0.0);
         self.hits.resize(number * self.place.len(), UNREAD);

@@ -11,6 +11,8 @@ mod stack;
 mod sweep;
 mod tree;
 
+use std::sync::Arc;
+
 use glam::Vec3A;
 
 use super::Shading;
@@ -23,7 +25,7 @@ pub(in crate::path) use copies::Copied;
 use copies::Copies;
 #[cfg(feature = "simd")]
 pub(in crate::path) use kind::{Kind, axis};
-use soup::Soup;
+pub(in crate::path) use soup::Soup;
 pub(in crate::path) use sweep::Sweep;
 use tree::Tree;
 
@@ -32,7 +34,7 @@ use tree::Tree;
 pub(in crate::path) struct Geometry {
     shapes: Vec<Primitive>,
     search: Search,
-    soup: Option<Soup>,
+    soup: Option<Arc<Soup>>,
     copies: Option<Copies>,
     bounds: [Vec3A; 2],
 }
@@ -48,9 +50,9 @@ enum Search {
 
 /// A shape at a distance along a ray.
 #[derive(Clone, Copy, Debug)]
-struct Found {
-    shape: usize,
-    distance: f32,
+pub(in crate::path) struct Found {
+    pub(in crate::path) shape: usize,
+    pub(in crate::path) distance: f32,
 }
 
 /// The nearest shape that a ray meets.
@@ -74,6 +76,12 @@ pub(in crate::path) fn around(boxes: impl Iterator<Item = [Vec3A; 2]>) -> [Vec3A
     boxes.fold(nothing, |[low, high], [l, h]| [low.min(l), high.max(h)])
 }
 
+/// The boxes around what is no shape of its own.
+fn others(soup: Option<&Soup>, copies: Option<&Copies>) -> impl Iterator<Item = [Vec3A; 2]> {
+    let soup = soup.map(Soup::bounds);
+    soup.into_iter().chain(copies.map(Copies::bounds))
+}
+
 impl Geometry {
     pub(in crate::path) fn new(
         shapes: Vec<Primitive>,
@@ -81,8 +89,7 @@ impl Geometry {
         copies: Vec<Copied>,
     ) -> Self {
         let (soup, copies) = (Soup::new(meshes), Copies::new(copies));
-        let soups = soup.iter().map(Soup::bounds);
-        let others: Vec<_> = soups.chain(copies.iter().map(Copies::bounds)).collect();
+        let others: Vec<_> = others(soup.as_ref(), copies.as_ref()).collect();
         let search = if shapes.len() <= FEW {
             Search::Sweep(Sweep::new(&shapes, &others))
         } else {
@@ -92,7 +99,7 @@ impl Geometry {
         Self {
             shapes,
             search,
-            soup,
+            soup: soup.map(Arc::new),
             copies,
             bounds,
         }
@@ -163,12 +170,12 @@ impl Geometry {
         }
     }
 
-    /// The shapes, if they are few and all there is.
+    /// The shapes, if they are few and meshes are all else.
     #[cfg(feature = "simd")]
-    pub(in crate::path) fn few(&self) -> Option<(&[Primitive], &Sweep)> {
+    pub(in crate::path) fn few(&self) -> Option<(&[Primitive], &Sweep, Option<&Arc<Soup>>)> {
         match &self.search {
-            Search::Sweep(sweep) if self.soup.is_none() && self.copies.is_none() => {
-                Some((&self.shapes, sweep))
+            Search::Sweep(sweep) if self.copies.is_none() => {
+                Some((&self.shapes, sweep, self.soup.as_ref()))
             }
             _ => None,
         }
@@ -177,7 +184,8 @@ impl Geometry {
     /// Whether a flat shape can be in the way between two points of the scene.
     #[cfg(feature = "simd")]
     pub(in crate::path) fn divides(&self, flat: &Flat) -> bool {
-        kind::divides(flat, &self.shapes, &[])
+        let others: Vec<_> = others(self.soup.as_deref(), self.copies.as_ref()).collect();
+        kind::divides(flat, &self.shapes, &others)
     }
 
     /// Whether any shape is in the way from one point of the scene to another, at `limit`.
@@ -204,6 +212,6 @@ impl Geometry {
     fn occluded_by_others(&self, ray: &Ray, limit: f32) -> bool {
         let soup = |soup: &Soup| soup.occluded(ray, limit);
         let copies = |copies: &Copies| copies.occluded(ray, limit);
-        self.soup.as_ref().is_some_and(soup) || self.copies.as_ref().is_some_and(copies)
+        self.soup.as_deref().is_some_and(soup) || self.copies.as_ref().is_some_and(copies)
     }
 }

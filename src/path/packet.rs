@@ -1,8 +1,9 @@
 //! Many paths at once, one in each lane of the vectors that the machine has.
 //!
-//! For scenes of few flat shapes that scatter light ideally diffusely and emit it, below a constant sky or none. Every lane has
-//! the bits of [`Paths::radiance`]: the same arithmetic in the same order, the coordinates read in the same order.
+//! For scenes of few flat shapes that scatter light ideally diffusely and emit it, and of meshes that do not emit any, below a
+//! constant sky or none. Every lane has the bits of [`Paths::radiance`]: the same arithmetic in the same order, the coordinates read in the same order.
 
+mod meshes;
 mod place;
 mod sweep;
 mod walk;
@@ -18,6 +19,7 @@ use crate::Sampler;
 
 pub(in crate::path) use place::{Emitted, Optics};
 
+use meshes::Meshes;
 use place::{MOST, Table};
 use sweep::Shapes;
 use walk::Walk;
@@ -29,6 +31,7 @@ pub(in crate::path) struct Packet {
     shapes: Shapes,
     /// Those of them that can be between two points of the scene.
     dividing: Shapes,
+    meshes: Option<Meshes>,
     lights: AreaLights,
     /// The shape of each emitter.
     emitters: Vec<u32>,
@@ -40,18 +43,22 @@ pub(in crate::path) struct Packet {
 }
 
 impl Packet {
-    /// The scene of the given shapes and lights, if it is one of those. `optics` tells what a shape does to light, if that is
-    /// among what packets know.
+    /// The scene of the given shapes and lights, if it is one of those. `optics` tells what a shape does to light, or a mesh, which
+    /// have the numbers after the shapes, if that is among what packets know.
     pub(in crate::path) fn new(
         geometry: &Geometry,
         optics: impl Fn(usize) -> Option<Optics>,
         lights: &AreaLights,
         sky: Vec3A,
     ) -> Option<Self> {
-        let (primitives, sweep) = geometry.few()?;
+        let (primitives, sweep, soup) = geometry.few()?;
         if sweep.flat_shapes.len() != primitives.len() || primitives.len() > MOST {
             return None;
         }
+        let meshes = match soup {
+            None => None,
+            Some(soup) => Some(Meshes::new(soup, |mesh| optics(primitives.len() + mesh))?),
+        };
         let mut packet = Self {
             table: Table::EMPTY,
             shapes: Shapes::default(),
@@ -61,7 +68,8 @@ impl Packet {
             sky,
             triangles: false,
             slanted_lights: false,
-            one_sided: false,
+            one_sided: meshes.as_ref().is_some_and(Meshes::one_sided),
+            meshes,
             arch: pulp::Arch::new(),
         };
         let mut emitters = Vec::new();

@@ -122,7 +122,6 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
         }
         // Many paths at once draw from the area: that costs more samples, but each takes less than half the time.
         let at_once = parts.are_plain(&shapes)
-            && meshes.is_empty()
             && copies.is_empty()
             && environment.constant().is_some();
         let mut emitters = parts.emitters;

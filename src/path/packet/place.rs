@@ -190,7 +190,7 @@ impl Table {
 }
 
 /// The `chance` of a shape that emits nothing.
-const DARK: f32 = -1.0;
+pub(super) const DARK: f32 = -1.0;
 
 /// A [`Place`] lane by lane.
 struct Rows {

@@ -5,6 +5,8 @@ use core::f32::consts::{FRAC_1_PI, FRAC_PI_4};
 use glam::{Vec3, Vec3A};
 use pulp::{Simd, WithSimd};
 
+use super::meshes::{Meshes, Rays};
+use super::place::DARK;
 use super::{Packet, Start};
 use crate::Sampler;
 use crate::path::frame::single;
@@ -110,6 +112,7 @@ impl<U: Sampler> Walk<'_, U> {
             table,
             shapes,
             dividing,
+            meshes,
             ..
         } = self.packet;
         let (zero, one) = (Real::splat(simd, 0.0), Real::splat(simd, 1.0));
@@ -122,15 +125,28 @@ impl<U: Sampler> Walk<'_, U> {
 
         let hit = shapes.nearest(simd, origin, direction);
         let walking = segment.gt(zero);
-        let met = walking & hit.distance.lt(Real::splat(simd, f32::INFINITY));
+        let mut met = walking & hit.distance.lt(Real::splat(simd, f32::INFINITY));
+        let triangles = meshes.as_ref().map(|meshes| {
+            let mut limit = Row::<f32>::ZERO;
+            hit.distance.store(&mut limit);
+            meshes.nearest(&Rays {
+                origin: &state.origin,
+                direction: &state.direction,
+                limit: &limit,
+                active: &walking.row(simd),
+            })
+        });
+        if let Some(triangles) = &triangles {
+            met = met | triangles.met(simd);
+        }
         if self.packet.sky != Vec3A::ZERO {
             let sum = radiance + throughput * Vector::splat(simd, self.packet.sky);
             radiance = (walking & !met).choose(sum, radiance);
         }
         let mut shape = Row::<u32>::ZERO;
         hit.shape.store(&mut shape);
-        let here = table.places(simd, &shape);
-        let point = {
+        let mut here = table.places(simd, &shape);
+        let mut point = {
             let [low_s, low_t] = table.inset(simd, &shape);
             let s = hit.s.max(low_s).min(one - low_s);
             let t = hit.t.max(low_t).min(one - low_t);
@@ -142,6 +158,17 @@ impl<U: Sampler> Walk<'_, U> {
             }
         };
 
+        // The normal that light is scattered by.
+        let mut shading = here.normal;
+        if let Some(triangles) = &triangles {
+            let met = triangles.met(simd);
+            point = met.choose(triangles.point(simd), point);
+            here.normal = met.choose(triangles.normal(simd), here.normal);
+            here.margin = met.select(triangles.margin(simd), here.margin);
+            here.chance = met.select(Real::splat(simd, DARK), here.chance);
+            shading = met.choose(triangles.shading(simd), here.normal);
+        }
+
         // Emitted light, met by a direction that was drawn at the surface before.
         let lit = met & here.chance.ge(zero) & here.normal.dot(origin - point).gt(zero);
         if lit.any() {
@@ -150,17 +177,24 @@ impl<U: Sampler> Walk<'_, U> {
             let emission = throughput * table.radiance(simd, &shape);
             radiance = lit.choose(radiance + emission * power(density, other), radiance);
         }
-        let facing = here.normal.dot(-direction);
+        let facing = shading.dot(-direction);
         let mut walking = met & segment.lt(Real::splat(simd, self.paths.longest as f32));
         if self.packet.one_sided {
-            walking = walking & (table.inner(simd, &shape).gt(zero) | facing.gt(zero));
+            let mut inner = table.inner(simd, &shape);
+            if let Some(triangles) = &triangles {
+                inner = (triangles.met(simd)).select(triangles.inner(simd), inner);
+            }
+            walking = walking & (inner.gt(zero) | facing.gt(zero));
         }
         if !walking.any() {
             radiance.store(&mut state.radiance);
             zero.store(&mut state.segment);
             return;
         }
-        let albedo = table.albedo(simd, &shape);
+        let mut albedo = table.albedo(simd, &shape);
+        if let Some(triangles) = &triangles {
+            albedo = (triangles.met(simd)).choose(triangles.albedo(simd), albedo);
+        }
 
         let mut chosen = Row::<u32>::ZERO;
         let [a, b, c, d] = self.draw(simd, state, walking, &mut chosen);
@@ -198,7 +232,7 @@ impl<U: Sampler> Walk<'_, U> {
             let way = there.leave(target, -toward) - start;
             let length = way.length();
             let into = way * (1.0 / length);
-            let cosine = here.normal.dot(into);
+            let cosine = shading.dot(into);
             let size = cosine.abs();
             let other = FRAC_1_PI * size;
             let active = walking
@@ -212,7 +246,10 @@ impl<U: Sampler> Walk<'_, U> {
                 // Other lanes may have the largest of numbers, whose inverse is a slow one.
                 let own = active.select(own, one);
                 let limit = length * (1.0 - gamma(8));
-                let visible = !dividing.occluded(start, into, limit, !active);
+                let mut visible = !dividing.occluded(start, into, limit, !active);
+                if let Some(meshes) = meshes {
+                    visible = self.passing(simd, meshes, visible, [start, into], limit);
+                }
                 let value = albedo * (FRAC_1_PI * size);
                 let sum = throughput * value * (light * (1.0 / own)) * power(own, other);
                 radiance = visible.choose(radiance + sum, radiance);
@@ -229,7 +266,7 @@ impl<U: Sampler> Walk<'_, U> {
             walking = walking & (!playing | weight.gt(zero));
             throughput = playing.choose(throughput * weight, throughput);
         }
-        let normal = here.normal * one.copysign(facing);
+        let normal = shading * one.copysign(facing);
         let next = around(normal, local);
         here.leave(point, next).store(&mut state.origin);
         next.store(&mut state.direction);
@@ -239,6 +276,30 @@ impl<U: Sampler> Walk<'_, U> {
         walking
             .select(segment + 1.0, zero)
             .store(&mut state.segment);
+    }
+
+    /// Where no mesh is in the way, among the lanes of `visible`, from a point in a direction.
+    #[inline(always)]
+    fn passing<S: Simd>(
+        &self,
+        simd: S,
+        meshes: &Meshes,
+        visible: Mask<S>,
+        [start, into]: [Vector<S>; 2],
+        limit: Real<S>,
+    ) -> Mask<S> {
+        let (mut origin, mut direction) = ([Row::<f32>::ZERO; 3], [Row::<f32>::ZERO; 3]);
+        let mut limits = Row::<f32>::ZERO;
+        start.store(&mut origin);
+        into.store(&mut direction);
+        limit.store(&mut limits);
+        let passes = meshes.passes(&Rays {
+            origin: &origin,
+            direction: &direction,
+            limit: &limits,
+            active: &visible.row(simd),
+        });
+        Real::load(simd, &passes).gt(Real::splat(simd, 0.0))
     }
 
     /// Two coordinates for a point of the lights, which choose one first, and two for the next direction.

@@ -155,6 +155,14 @@ impl Flat {
         }
     }
 
+    /// The coordinates of a point along the edges, in the order that they had before any turning.
+    #[inline]
+    pub(super) fn along(&self, surface: &Surface) -> Vec2 {
+        let inside = surface.point - self.corner;
+        let along = Vec2::new(inside.dot(self.first_dual), inside.dot(self.second_dual));
+        if self.turned { along.yx() } else { along }
+    }
+
     /// The same points with the outer side on the other side, and the same texture coordinates.
     #[must_use]
     pub fn turned(self) -> Self {
@@ -257,12 +265,11 @@ impl Shape for Flat {
     /// The texture coordinates are those along the edges.
     #[inline]
     fn shading(&self, surface: &Surface) -> Shading {
-        let inside = surface.point - self.corner;
-        let uv = Vec2::new(inside.dot(self.first_dual), inside.dot(self.second_dual));
-        let (uv, du, dv) = if self.turned {
-            (uv.yx(), self.second_edge, self.first_edge)
+        let uv = self.along(surface);
+        let (du, dv) = if self.turned {
+            (self.second_edge, self.first_edge)
         } else {
-            (uv, self.first_edge, self.second_edge)
+            (self.first_edge, self.second_edge)
         };
         Shading {
             uv,

@@ -167,14 +167,7 @@ impl Mesh {
             Some(&number) => number,
             None => number(triangle),
         };
-        if !self.normals.is_empty() {
-            let [a, b, c] =
-                self.triangles[triangle].map(|index| Vec3A::from(self.normals[index as usize]));
-            let side = if self.turned { -1.0 } else { 1.0 };
-            let normal = (a * (1.0 - s - t) + (b * s + c * t)) * side;
-            // Normals that cancel one another say nothing.
-            shading.normal = normal.try_normalize().unwrap_or(plain.normal);
-        }
+        shading.normal = self.normal_along(triangle, flat, plain.uv);
         if !self.uvs.is_empty() {
             let [a, b, c] = self.uvs(triangle);
             let (first, second) = (b - a, c - a);
@@ -185,6 +178,27 @@ impl Mesh {
             shading.dv = (plain.dv * first.x - plain.du * second.x) * inverse;
         }
         shading
+    }
+
+    /// The normal that light is scattered by at a point of a triangle.
+    #[inline]
+    pub(in crate::path) fn normal(&self, triangle: usize, flat: &Flat, surface: &Surface) -> Vec3A {
+        self.normal_along(triangle, flat, flat.along(surface))
+    }
+
+    /// The same at the coordinates along its edges.
+    #[inline]
+    fn normal_along(&self, triangle: usize, flat: &Flat, along: Vec2) -> Vec3A {
+        if self.normals.is_empty() {
+            return flat.normal;
+        }
+        let [s, t] = along.to_array();
+        let [a, b, c] =
+            self.triangles[triangle].map(|index| Vec3A::from(self.normals[index as usize]));
+        let side = if self.turned { -1.0 } else { 1.0 };
+        let normal = (a * (1.0 - s - t) + (b * s + c * t)) * side;
+        // Normals that cancel one another say nothing.
+        normal.try_normalize().unwrap_or(flat.normal)
     }
 
     fn one_each(&self, name: &'static str, count: usize) -> Result<(), Error> {

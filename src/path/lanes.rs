@@ -17,11 +17,33 @@ pub(in crate::path) const WIDEST: usize = 16;
 pub(in crate::path) struct Row<T>(pub(super) [T; WIDEST]);
 
 impl Row<f32> {
+    /// The vector of a lane of three rows.
+    #[inline(always)]
+    pub(in crate::path) fn vector([x, y, z]: &[Self; 3], lane: usize) -> Vec3A {
+        Vec3A::new(x.0[lane], y.0[lane], z.0[lane])
+    }
+
+    /// Sets the vector of a lane of three rows.
+    #[inline(always)]
+    pub(in crate::path) fn set_vector(rows: &mut [Self; 3], lane: usize, vector: Vec3A) {
+        for (row, number) in rows.iter_mut().zip(vector.to_array()) {
+            row.0[lane] = number;
+        }
+    }
+}
+
+impl Row<f32> {
     pub(in crate::path) const ZERO: Self = Self([0.0; WIDEST]);
 }
 
 impl Row<u32> {
     pub(in crate::path) const ZERO: Self = Self([0; WIDEST]);
+
+    /// The same number in all lanes.
+    #[inline(always)]
+    pub(in crate::path) fn splat(number: u32) -> Self {
+        Self([number; WIDEST])
+    }
 }
 
 /// A number a lane.
@@ -87,6 +109,14 @@ impl<S: Simd> Real<S> {
     #[inline(always)]
     pub(in crate::path) fn store(self, row: &mut Row<f32>) {
         S::as_mut_simd_f32s(&mut row.0).0[0] = self.lanes;
+    }
+
+    /// The numbers, to be read lane by lane.
+    #[inline(always)]
+    pub(in crate::path) fn row(self) -> Row<f32> {
+        let mut row = Row::<f32>::ZERO;
+        self.store(&mut row);
+        row
     }
 
     #[inline(always)]
@@ -191,10 +221,8 @@ impl<S: Simd> Mask<S> {
     /// 1 where it holds, 0 elsewhere, to be read lane by lane.
     #[inline(always)]
     pub(in crate::path) fn row(self, simd: S) -> Row<f32> {
-        let mut row = Row::<f32>::ZERO;
         let (yes, no) = (Real::splat(simd, 1.0), Real::splat(simd, 0.0));
-        self.select(yes, no).store(&mut row);
-        row
+        self.select(yes, no).row()
     }
 
     /// Whether it holds in any lane.
@@ -333,6 +361,12 @@ impl<S: Simd> Vector<S> {
         self.x.store(x);
         self.y.store(y);
         self.z.store(z);
+    }
+
+    /// The vectors, to be read lane by lane.
+    #[inline(always)]
+    pub(in crate::path) fn rows(self) -> [Row<f32>; 3] {
+        [self.x.row(), self.y.row(), self.z.row()]
     }
 
     #[inline(always)]

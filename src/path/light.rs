@@ -106,7 +106,7 @@ impl Emitter {
     }
 
     /// How much light it emits in all, up to a factor that is the same for all emitters.
-    fn power(&self) -> f64 {
+    pub(in crate::path) fn power(&self) -> f64 {
         f64::from(self.shape.area()) * self.radiance.as_dvec3().element_sum()
     }
 }

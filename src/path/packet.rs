@@ -4,6 +4,7 @@
 //! constant sky or none. Every lane has the bits of [`Paths::radiance`]: the same arithmetic in the same order, the coordinates read in the same order.
 
 mod meshes;
+mod near;
 mod place;
 mod sweep;
 mod walk;
@@ -20,6 +21,7 @@ use crate::Sampler;
 pub(in crate::path) use place::{Emitted, Optics};
 
 use meshes::Meshes;
+use near::Near;
 use place::{MOST, Table};
 use sweep::Shapes;
 use walk::Walk;
@@ -33,6 +35,7 @@ pub(in crate::path) struct Packet {
     dividing: Shapes,
     meshes: Option<Meshes>,
     lights: AreaLights,
+    near: Option<Near>,
     /// The shape of each emitter.
     emitters: Vec<u32>,
     sky: Vec3A,
@@ -64,6 +67,7 @@ impl Packet {
             shapes: Shapes::default(),
             dividing: Shapes::default(),
             lights: lights.clone(),
+            near: None,
             emitters: Vec::new(),
             sky,
             triangles: false,
@@ -93,6 +97,7 @@ impl Packet {
         }
         emitters.sort_unstable();
         packet.emitters = emitters.into_iter().map(|(_, shape)| shape).collect();
+        packet.near = Near::new(&packet.emitters, lights);
         Some(packet)
     }
 
@@ -130,10 +135,11 @@ mod tests {
     use glam::Vec3;
 
     use crate::hash::{hash, unit_f32};
-    use crate::path::bsdf::{Bsdf, Lambertian};
+    use crate::path::bsdf::{Bsdf, Lambertian, Material};
     use crate::path::light::{AreaLights, Constant, Environment, Light, NoEnvironment, NoLight};
     use crate::path::sensor::Pinhole;
-    use crate::path::shape::{Flat, cuboid};
+    use crate::path::shape::{Flat, Mesh, Primitive, cuboid};
+    use crate::path::texture::Texture;
     use crate::path::{Object, Paths, Pixel, Scene, View, filter::BoxFilter, scenes};
     use crate::points::{HashedOwen, PointSet, Sobol};
     use crate::{Error, Integrand};
@@ -231,6 +237,88 @@ mod tests {
         let sky = Constant::new([0.2, 0.3, 0.4]).unwrap();
         agree::<_, AreaLights, _>(&room(true, sky).unwrap());
         agree::<_, NoLight, _>(&room(false, sky).unwrap());
+    }
+
+    /// A box with a lamp, and in it meshes with and without normals, one of them black inside and turned.
+    fn meshes<B: Bsdf + From<Lambertian>, E: Environment>(
+        smooth: bool,
+        height: f32,
+        environment: E,
+    ) -> Result<View<B, AreaLights, E, Pinhole>, Error> {
+        let edges = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let law = |albedo, one_sided| -> Result<B, Error> {
+            let law = Lambertian::new(albedo)?;
+            Ok(B::from(if one_sided { law.outside() } else { law }))
+        };
+        let walls = cuboid([0.0; 3], edges)?.into_iter().map(Flat::turned);
+        let lamp = Flat::parallelogram([-0.4, height, -0.4], [0.8, 0.0, 0.0], [0.0, 0.0, 0.8])?;
+        let mut objects = vec![
+            Object::new(walls, law([0.7, 0.5, 0.9], false)?),
+            Object::new([lamp], law([0.3; 3], true)?).emitting([5.0, 4.0, 3.0])?,
+        ];
+        let mut state = 0;
+        let mut random = || {
+            state += 1;
+            unit_f32(hash(12, state))
+        };
+        for (k, one_sided) in [false, true, true].into_iter().enumerate() {
+            // More triangles than are taken apart.
+            let mut vector = |size: f32, shift: f32| [0; 3].map(|_| size * random() - shift);
+            let positions: Vec<_> = (0..24).map(|_| vector(1.4, 0.7)).collect();
+            let normals = (0..24).map(|_| vector(2.0, 1.0)).collect();
+            let corners = (0..22).map(|first| [first, first + 1, first + 2]).collect();
+            let mut mesh = Mesh::new(positions, corners)?;
+            if smooth {
+                mesh = mesh.with_normals(normals)?;
+            }
+            let mesh = if k == 2 { mesh.turned() } else { mesh };
+            objects.push(Object::mesh(mesh, law([0.2, 0.6, 0.8], one_sided)?));
+        }
+        Ok(View {
+            scene: Scene::new(objects, environment)?,
+            sensor: Pinhole::look_at([0.1, -0.1, -0.9], [0.0; 3], [0.0, 1.0, 0.0], 70.0, 1.4)?,
+            filter: BoxFilter,
+            paths: Paths::default(),
+        })
+    }
+
+    #[test]
+    fn packets_give_the_bits_of_single_paths_among_meshes() {
+        let sky = Constant::new([0.2, 0.3, 0.4]).unwrap();
+        for height in [0.9, -0.6] {
+            agree(&meshes::<Lambertian, _>(false, height, NoEnvironment).unwrap());
+            agree(&meshes::<Material<Texture>, _>(true, height, NoEnvironment).unwrap());
+            agree(&meshes::<Material<Texture>, _>(true, height, sky).unwrap());
+        }
+    }
+
+    #[test]
+    fn packets_give_the_bits_of_single_paths_near_a_lamp() {
+        let mut view = scenes::cornell_box();
+        let room = |size: f32| -> Result<Vec<Object<Lambertian>>, Error> {
+            let white = Lambertian::new([0.6; 3])?;
+            let floor = Flat::parallelogram([-4.0, 0.0, 4.0], [8.0, 0.0, 0.0], [0.0, 0.0, -8.0])?;
+            let half = 0.5 * size;
+            let corner = [-half, 0.8, -half];
+            let tile = [[size, 0.0, 0.0], [0.0, 0.0, size]];
+            let corners = [corner, [half, 0.8, -half], [-half, 0.8, half]];
+            Ok(vec![
+                Object::new([floor], white),
+                Object::new([Flat::parallelogram(corner, tile[0], tile[1])?], white)
+                    .emitting([2.0; 3])?,
+                Object::new([Flat::triangle(corners)?], white).emitting([1.0; 3])?,
+            ])
+        };
+        for (size, near) in [(2.0, true), (0.1, false)] {
+            view.scene = Scene::new(room(size).unwrap(), NoEnvironment).unwrap();
+            let lights = view.scene.lights().shapes();
+            let drawn = |shape: &Primitive| match shape {
+                Primitive::Flat(flat) => flat.is_by_solid_angle(),
+                _ => false,
+            };
+            assert_eq!(lights.map(drawn).collect::<Vec<_>>(), [near; 2], "{size}");
+            agree(&view);
+        }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What is rendered.
 
+mod nearby;
 mod parts;
 
 use std::sync::Arc;
@@ -120,16 +121,15 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
                 copies.push(copy);
             }
         }
-        // Many paths at once draw from the area: that costs more samples, but each takes less than half the time.
-        let at_once = parts.are_plain(&shapes)
-            && copies.is_empty()
-            && environment.constant().is_some();
-        let mut emitters = parts.emitters;
-        if !at_once {
-            emitters.iter_mut().for_each(Emitter::by_solid_angle);
-        }
+        let at_once =
+            parts.are_plain(&shapes) && copies.is_empty() && environment.constant().is_some();
         let geometry = Geometry::new(shapes, meshes, copies);
         check_scene(geometry.bounds())?;
+        let mut emitters = parts.emitters;
+        // Where many paths go at once, drawing from the area is much the faster way.
+        if !at_once || nearby::are_lit(&geometry, &emitters) {
+            emitters.iter_mut().for_each(Emitter::by_solid_angle);
+        }
         #[cfg_attr(
             not(feature = "simd"),
             expect(unused_mut, reason = "there are no packets")

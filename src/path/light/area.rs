@@ -4,6 +4,8 @@ use glam::Vec3A;
 
 use super::{Emission, Emitter, Illumination, Light};
 use crate::path::frame::singles;
+#[cfg(feature = "simd")]
+use crate::path::shape::Primitive;
 use crate::path::shape::Shape;
 use crate::path::{Segment, Surface};
 use crate::{Error, Sampler};
@@ -53,6 +55,12 @@ impl AreaLights {
     pub(in crate::path) fn radiance(&self, emitter: u32) -> Option<Vec3A> {
         let emitter = &self.emitters[emitter as usize];
         emitter.picture.is_none().then_some(emitter.radiance)
+    }
+
+    /// The shapes of the emitters.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn shapes(&self) -> impl Iterator<Item = &Primitive> {
+        self.emitters.iter().map(|emitter| &emitter.shape)
     }
 
     /// Which emitter the coordinate chooses, and what is left of the coordinate.

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use glam::Vec3A;
 use pulp::Simd;
 
 use super::place::Optics;
@@ -79,19 +78,6 @@ impl Points {
     }
 }
 
-/// The vector of one lane.
-#[inline(always)]
-fn vector(rows: &[Row<f32>; 3], lane: usize) -> Vec3A {
-    Vec3A::new(rows[0].0[lane], rows[1].0[lane], rows[2].0[lane])
-}
-
-#[inline(always)]
-fn set(rows: &mut [Row<f32>; 3], lane: usize, vector: Vec3A) {
-    for (row, number) in rows.iter_mut().zip(vector.to_array()) {
-        row.0[lane] = number;
-    }
-}
-
 /// Where rays start and where they go, in the lanes that have one.
 pub(super) struct Rays<'a> {
     pub(super) origin: &'a [Row<f32>; 3],
@@ -108,8 +94,8 @@ impl Rays<'_> {
         let lanes = (0..WIDEST).filter(|&lane| self.active.0[lane] > 0.0);
         lanes.map(|lane| {
             let ray = Ray {
-                origin: vector(self.origin, lane),
-                direction: vector(self.direction, lane),
+                origin: Row::vector(self.origin, lane),
+                direction: Row::vector(self.direction, lane),
             };
             (lane, ray, self.limit.0[lane])
         })
@@ -144,12 +130,12 @@ impl Meshes {
             let surface = self.soup.surface(shape, &ray, distance);
             let optics = &self.optics[mesh];
             points.met.0[lane] = 1.0;
-            set(&mut points.point, lane, surface.point);
-            set(&mut points.normal, lane, surface.normal);
+            Row::set_vector(&mut points.point, lane, surface.point);
+            Row::set_vector(&mut points.normal, lane, surface.normal);
             points.margin.0[lane] = surface.margin;
             let shading = self.soup.normal(mesh, shape, &surface);
-            set(&mut points.shading, lane, shading);
-            set(&mut points.albedo, lane, optics.albedo);
+            Row::set_vector(&mut points.shading, lane, shading);
+            Row::set_vector(&mut points.albedo, lane, optics.albedo);
             points.inner.0[lane] = if optics.inner { 1.0 } else { 0.0 };
         }
         points

@@ -6,6 +6,7 @@ use glam::{Vec3, Vec3A};
 use pulp::{Simd, WithSimd};
 
 use super::meshes::{Meshes, Rays};
+use super::near::Drawn;
 use super::place::DARK;
 use super::{Packet, Start};
 use crate::Sampler;
@@ -127,12 +128,10 @@ impl<U: Sampler> Walk<'_, U> {
         let walking = segment.gt(zero);
         let mut met = walking & hit.distance.lt(Real::splat(simd, f32::INFINITY));
         let triangles = meshes.as_ref().map(|meshes| {
-            let mut limit = Row::<f32>::ZERO;
-            hit.distance.store(&mut limit);
             meshes.nearest(&Rays {
                 origin: &state.origin,
                 direction: &state.direction,
-                limit: &limit,
+                limit: &hit.distance.row(),
                 active: &walking.row(simd),
             })
         });
@@ -173,7 +172,11 @@ impl<U: Sampler> Walk<'_, U> {
         let lit = met & here.chance.ge(zero) & here.normal.dot(origin - point).gt(zero);
         if lit.any() {
             let area = table.area(simd, &shape);
-            let other = here.chance * here.density_of_area(origin, point, area);
+            let mut drawn = here.density_of_area(origin, point, area);
+            if let Some(near) = &self.packet.near {
+                drawn = near.density(&shape, lit, origin, drawn);
+            }
+            let other = here.chance * drawn;
             let emission = throughput * table.radiance(simd, &shape);
             radiance = lit.choose(radiance + emission * power(density, other), radiance);
         }
@@ -196,7 +199,10 @@ impl<U: Sampler> Walk<'_, U> {
             albedo = (triangles.met(simd)).choose(triangles.albedo(simd), albedo);
         }
 
-        let mut chosen = Row::<u32>::ZERO;
+        let mut chosen = match self.packet.emitters[..] {
+            [one] => Row::<u32>::splat(one),
+            _ => Row::<u32>::ZERO,
+        };
         let [a, b, c, d] = self.draw(simd, state, walking, &mut chosen);
 
         // Next-event estimation: light met by drawing a point of the lights.
@@ -215,7 +221,7 @@ impl<U: Sampler> Walk<'_, U> {
                     table.radiance(simd, &chosen),
                 )
             };
-            let (a, b) = if self.packet.slanted_lights {
+            let (s, t) = if self.packet.slanted_lights {
                 let slanted = table.slant(simd, &chosen).gt(zero);
                 let above = b.gt(a);
                 let (half_a, half_b) = (0.5 * a, 0.5 * b);
@@ -225,8 +231,16 @@ impl<U: Sampler> Walk<'_, U> {
             } else {
                 (a, b)
             };
-            let target = there.at(a, b);
-            let own = there.chance * there.density_of_area(point, target, area);
+            let target = there.at(s, t);
+            let mut drawn = Drawn {
+                point: target,
+                density: there.density_of_area(point, target, area),
+            };
+            if let Some(near) = &self.packet.near {
+                drawn = near.sample(&chosen, walking, point, [a, b], drawn);
+            }
+            let target = drawn.point;
+            let own = there.chance * drawn.density;
             let toward = target - point;
             let start = here.leave(point, toward);
             let way = there.leave(target, -toward) - start;
@@ -288,15 +302,10 @@ impl<U: Sampler> Walk<'_, U> {
         [start, into]: [Vector<S>; 2],
         limit: Real<S>,
     ) -> Mask<S> {
-        let (mut origin, mut direction) = ([Row::<f32>::ZERO; 3], [Row::<f32>::ZERO; 3]);
-        let mut limits = Row::<f32>::ZERO;
-        start.store(&mut origin);
-        into.store(&mut direction);
-        limit.store(&mut limits);
         let passes = meshes.passes(&Rays {
-            origin: &origin,
-            direction: &direction,
-            limit: &limits,
+            origin: &start.rows(),
+            direction: &into.rows(),
+            limit: &limit.row(),
             active: &visible.row(simd),
         });
         Real::load(simd, &passes).gt(Real::splat(simd, 0.0))

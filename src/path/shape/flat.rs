@@ -117,10 +117,42 @@ impl Flat {
         })
     }
 
+    /// The solid angle that a small shape of this area in the middle would fill, seen from a point at some height above the plane;
+    /// negative behind it.
+    #[inline]
+    pub(in crate::path) fn apparent(&self, from: Vec3A) -> f32 {
+        let corner = self.corner - from;
+        let edges = self.first_edge + self.second_edge;
+        let to_middle = corner + edges * if self.slant > 0.0 { 1.0 / 3.0 } else { 0.5 };
+        let squared = to_middle.length_squared();
+        self.area * -corner.dot(self.normal) / (squared * squared.sqrt())
+    }
+
+    /// Whether it is to be drawn by solid angle where it is near.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn is_by_solid_angle(&self) -> bool {
+        self.outline.is_some()
+    }
+
     /// The shape as `from` sees it, if it is to be drawn by solid angle.
     #[inline]
     fn near(&self, from: Vec3A) -> Option<Near> {
         self.outline?.near(self, from)
+    }
+
+    /// A point drawn by solid angle and its density, if the shape is to be drawn so from there.
+    #[cfg(feature = "simd")]
+    #[inline]
+    pub(in crate::path) fn sample_near(&self, from: Vec3A, u: [f32; 2]) -> Option<(Vec3A, f32)> {
+        let near = self.near(from)?;
+        Some((self.at_near(&near, u).point, near.solid_angle().recip()))
+    }
+
+    /// The density of [`sample_near`](Self::sample_near).
+    #[cfg(feature = "simd")]
+    #[inline]
+    pub(in crate::path) fn density_near(&self, from: Vec3A) -> Option<f32> {
+        Some(self.near(from)?.solid_angle().recip())
     }
 
     #[inline]
@@ -189,7 +221,8 @@ impl Flat {
     /// points closer to its plane than a hundredth of the longest edge, and all points in front of shapes thinner than a fiftieth of it, where `f32` has
     /// too few digits, and of parallelograms that are no rectangles.
     ///
-    /// The scene does this to its lights, unless it is one whose shapes could be traced many paths at once.
+    /// The scene does this to its lights; to those of scenes whose shapes could be traced many paths at once, only if an eighth of the
+    /// light that meets anything does so close to them.
     ///
     /// ```
     /// use estimand::path::shape::{Flat, Shape};

@@ -51,11 +51,7 @@ impl Outline {
     pub(super) fn near(self, flat: &Flat, from: Vec3A) -> Option<Near> {
         let corner = flat.corner - from;
         let height = -corner.dot(flat.normal);
-        let edges = flat.first_edge + flat.second_edge;
-        let to_middle = corner + edges * if flat.slant > 0.0 { 1.0 / 3.0 } else { 0.5 };
-        let squared = to_middle.length_squared();
-        let seen = flat.area * height > SMALLEST * (squared * squared.sqrt());
-        if !(seen && height > LOWEST * self.longest()) {
+        if !(flat.apparent(from) > SMALLEST && height > LOWEST * self.longest()) {
             return None;
         }
         Some(match self {

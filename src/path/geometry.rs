@@ -64,7 +64,7 @@ pub(in crate::path) struct Hit {
     /// Which triangle of all meshes, if it is one.
     pub(in crate::path) triangle: usize,
     /// Which copy, if it is one.
-    copy: Option<usize>,
+    pub(in crate::path) copy: Option<usize>,
 }
 
 /// Up to so many shapes are swept over: there a sweep of vectors is faster than a tree.

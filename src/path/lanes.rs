@@ -14,7 +14,7 @@ pub(in crate::path) const WIDEST: usize = 16;
 /// Room for a number for each lane, to be written and read lane by lane.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(in crate::path) struct Row<T>(pub(super) [T; WIDEST]);
+pub(in crate::path) struct Row<T>(pub(in crate::path) [T; WIDEST]);
 
 impl Row<f32> {
     /// The vector of a lane of three rows.

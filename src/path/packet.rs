@@ -1,28 +1,33 @@
 //! Many paths at once, one in each lane of the vectors that the machine has.
 //!
-//! For scenes of few flat shapes that scatter light ideally diffusely and emit it, and of meshes that do not emit any, below a
-//! constant sky or none. Every lane has the bits of [`Paths::radiance`]: the same arithmetic in the same order, the coordinates read in the same order.
+//! For scenes of few flat shapes and spheres, and meshes, below a constant sky, a picture of one or none; only flat shapes emit light.
+//! Laws of scattering other than the ideally diffuse one, and what a ray finds of spheres and meshes, go lane by lane. Every lane has
+//! the bits of [`Paths::radiance`]: the same arithmetic in the same order, the coordinates read in the same order.
 
-mod meshes;
+mod drawn;
+mod math;
 mod near;
+mod optics;
 mod place;
+mod solids;
 mod sweep;
 mod walk;
 
 use glam::{Vec3, Vec3A};
 
 use super::Paths;
-use super::geometry::Geometry;
-use super::light::AreaLights;
+use super::bsdf::{Scattered, Scattering};
+use super::geometry::{Geometry, Hit};
+use super::light::{AreaLights, Sky};
 use super::render::Start;
 use super::shape::Primitive;
 use crate::Sampler;
 
-pub(in crate::path) use place::{Emitted, Optics};
+pub(in crate::path) use optics::{Emitted, Law, Optics};
 
-use meshes::Meshes;
 use near::Near;
 use place::{MOST, Table};
+use solids::{Solid, Solids};
 use sweep::Shapes;
 use walk::Walk;
 
@@ -33,68 +38,103 @@ pub(in crate::path) struct Packet {
     shapes: Shapes,
     /// Those of them that can be between two points of the scene.
     dividing: Shapes,
-    meshes: Option<Meshes>,
+    solids: Option<Solids>,
     lights: AreaLights,
     near: Option<Near>,
     /// The shape of each emitter.
     emitters: Vec<u32>,
-    sky: Vec3A,
+    around: Vec3A,
     triangles: bool,
     slanted_lights: bool,
     one_sided: bool,
+    /// Whether any law is another than the ideally diffuse one.
+    others: bool,
     arch: pulp::Arch,
 }
 
+/// What packets ask of a view, one lane at a time.
+pub(in crate::path) trait Single<U> {
+    /// Where the path of a point begins.
+    fn start(&self, u: &mut U) -> Start;
+
+    /// What the law at a point does for a pair of directions.
+    fn evaluate(&self, at: &Hit, out: Vec3A, into: Vec3A) -> Scattering;
+
+    /// A direction that the law at a point draws.
+    fn sample(&self, at: &Hit, out: Vec3A, u: &mut U) -> Option<Scattered>;
+
+    /// The picture around the scene, if that is what is around it.
+    fn sky(&self) -> Option<&Sky>;
+}
+
 impl Packet {
-    /// The scene of the given shapes and lights, if it is one of those. `optics` tells what a shape does to light, or a mesh, which
-    /// have the numbers after the shapes, if that is among what packets know.
+    /// The scene of the given shapes and lights, if it is one of those, with the same radiance from all around. `optics` tells what a
+    /// shape does to light, or a mesh, which have the numbers after the shapes, if that is among what packets know.
     pub(in crate::path) fn new(
         geometry: &Geometry,
         optics: impl Fn(usize) -> Option<Optics>,
         lights: &AreaLights,
-        sky: Vec3A,
+        around: Vec3A,
     ) -> Option<Self> {
         let (primitives, sweep, soup) = geometry.few()?;
-        if sweep.flat_shapes.len() != primitives.len() || primitives.len() > MOST {
+        let (flats, spheres) = (&sweep.flat_shapes, &sweep.ball_shapes);
+        if flats.len() + spheres.len() != primitives.len() || primitives.len() > MOST {
             return None;
         }
-        let meshes = match soup {
-            None => None,
-            Some(soup) => Some(Meshes::new(soup, |mesh| optics(primitives.len() + mesh))?),
-        };
         let mut packet = Self {
             table: Table::EMPTY,
             shapes: Shapes::default(),
             dividing: Shapes::default(),
+            solids: None,
             lights: lights.clone(),
             near: None,
             emitters: Vec::new(),
-            sky,
+            around,
             triangles: false,
             slanted_lights: false,
-            one_sided: meshes.as_ref().is_some_and(Meshes::one_sided),
-            meshes,
+            one_sided: false,
+            others: false,
             arch: pulp::Arch::new(),
         };
         let mut emitters = Vec::new();
-        for (place, &shape) in sweep.flat_shapes.iter().enumerate() {
+        let mut laws = Vec::new();
+        for (number, &shape) in (0_u32..).zip(flats) {
             let Primitive::Flat(flat) = &primitives[shape] else {
                 return None;
             };
             let optics = optics(shape)?;
-            let number = u32::try_from(place).ok()?;
-            packet.table.set(place, flat, &optics);
+            let part = u32::try_from(shape).ok()?;
+            packet.table.set(number as usize, part, flat, &optics);
             packet.shapes.push(number, flat);
             if geometry.divides(flat) {
                 packet.dividing.push(number, flat);
             }
             packet.triangles |= flat.slant != 0.0;
-            packet.one_sided |= !optics.inner;
+            laws.push(optics.law);
             if let Some(light) = optics.emitted {
                 packet.slanted_lights |= flat.slant != 0.0;
                 emitters.push((light.emitter, number));
             }
         }
+        let first = u32::try_from(flats.len()).ok()?;
+        let mut balls = Vec::new();
+        for (number, &shape) in (first..).zip(spheres) {
+            let Primitive::Sphere(sphere) = &primitives[shape] else {
+                return None;
+            };
+            balls.push(Solid::new(*sphere, shape, optics(shape)?)?);
+            packet.shapes.push_ball(number, sphere);
+            packet.dividing.push_ball(number, sphere);
+        }
+        let mut meshes = Vec::new();
+        for mesh in 0..soup.map_or(0, |soup| soup.meshes().len()) {
+            let part = primitives.len() + mesh;
+            meshes.push(Solid::new((), part, optics(part)?)?);
+        }
+        packet.solids = Solids::new(first, balls, soup, meshes);
+        laws.extend(packet.solids.iter().flat_map(Solids::laws));
+        packet.one_sided = laws.iter().any(|law| law.inner() == 0.0);
+        packet.others = laws.iter().any(|law| !law.is_diffuse());
         emitters.sort_unstable();
         packet.emitters = emitters.into_iter().map(|(_, shape)| shape).collect();
         packet.near = Near::new(&packet.emitters, lights);
@@ -103,20 +143,21 @@ impl Packet {
 
     /// What [`Paths::radiance`] gives for each of the points, times the weight that its start has.
     ///
-    /// The starts are behind a pointer, and it is not inlined, so that the loop is compiled for every kind of sampler, but not of
+    /// The view is behind a pointer, and it is not inlined, so that the loop is compiled for every kind of sampler, but not of
     /// view.
     #[inline(never)]
     pub(in crate::path) fn radiance<U: Sampler>(
         &self,
         paths: Paths,
-        start: &dyn Fn(&mut U) -> Start,
+        single: &dyn Single<U>,
         points: &mut [U],
         values: &mut [Vec3],
     ) {
         self.arch.dispatch(Walk {
             packet: self,
             paths,
-            start,
+            single,
+            sky: single.sky(),
             points,
             values,
         });
@@ -132,14 +173,20 @@ impl Packet {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
+    use glam::{Affine2, DMat3, Vec2, Vec3};
 
     use crate::hash::{hash, unit_f32};
-    use crate::path::bsdf::{Bsdf, Lambertian, Material};
-    use crate::path::light::{AreaLights, Constant, Environment, Light, NoEnvironment, NoLight};
+    use crate::path::bsdf::{
+        Bsdf, Conductor, Dielectric, Diffuse, Distribution, Lambertian, Mask, Material, Mirror,
+        Null, Plastic, RoughConductor, Roughness, Tint,
+    };
+    use crate::path::light::{
+        AreaLights, Background, Constant, Environment, Light, NoEnvironment, NoLight, Sky,
+        Surroundings,
+    };
     use crate::path::sensor::Pinhole;
-    use crate::path::shape::{Flat, Mesh, Primitive, cuboid};
-    use crate::path::texture::Texture;
+    use crate::path::shape::{Flat, Mesh, Primitive, Sphere, cuboid};
+    use crate::path::texture::{Checkerboard, Parameter, Texture, Uniform};
     use crate::path::{Object, Paths, Pixel, Scene, View, filter::BoxFilter, scenes};
     use crate::points::{HashedOwen, PointSet, Sobol};
     use crate::{Error, Integrand};
@@ -321,10 +368,86 @@ mod tests {
         }
     }
 
+    /// A ground, a lamp that may shine, spheres and a mesh of several laws, one of which has the given reflectance.
+    fn balls<P: Parameter + From<Uniform>, L: Light, E: Environment>(
+        lit: bool,
+        tiles: P,
+        environment: E,
+    ) -> Result<View<Material<P>, L, E, Pinhole>, Error> {
+        let color = |albedo: f32| P::from(Uniform::from(albedo));
+        let rough = Roughness::new(Distribution::Ggx, color(0.3))?;
+        let white: Material<P> = Lambertian::new([0.8, 0.7, 0.6])?.into();
+        let laws: Vec<Material<P>> = vec![
+            white.clone(),
+            Lambertian::new([0.2, 0.9, 0.5])?.outside().into(),
+            Mirror::new([0.9; 3])?.into(),
+            Dielectric::new(1.5, 1.0)?.tinted(Tint::default()).into(),
+            Plastic::new(color(0.4), 1.49, 1.0)?.into(),
+            RoughConductor::new(Conductor::new(color(2.0), color(1.5))?, rough).into(),
+            Mask::new(color(0.5), white.clone()).into(),
+            Diffuse::new(tiles.clone())?.into(),
+            Null.into(),
+        ];
+        let ground = Flat::parallelogram([-4.0, 0.0, 4.0], [8.0, 0.0, 0.0], [0.0, 0.0, -8.0])?;
+        let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])?;
+        let lamp = Object::new([lamp], white.clone());
+        let mut objects = vec![
+            Object::new([ground], white),
+            if lit { lamp.emitting([6.0; 3])? } else { lamp },
+        ];
+        let mut random = (0..).map(|state| unit_f32(hash(13, state)));
+        for law in &laws {
+            let [x, z] = [0; 2].map(|_| 2.4 * random.next().unwrap() - 1.2);
+            let ball = Sphere::new([x, 0.5, z], 0.4)?;
+            let ball = if x > 0.9 { ball.turned() } else { ball };
+            objects.push(Object::new([ball], law.clone()));
+        }
+        let mut vectors = |shift: f32| -> Vec<[f32; 3]> {
+            let mut vector = || [0; 3].map(|_| 1.4 * random.next().unwrap() - shift);
+            (0..60).map(|_| vector()).collect()
+        };
+        for law in [&laws[4], &laws[7]] {
+            let corners = (0..58).map(|first| [first, first + 1, first + 2]).collect();
+            let mesh = Mesh::new(vectors(0.5), corners)?.with_normals(vectors(0.7))?;
+            objects.push(Object::mesh(mesh, law.clone()));
+        }
+        Ok(View {
+            scene: Scene::new(objects, environment)?,
+            sensor: Pinhole::look_at([0.1, 1.5, 3.0], [0.0; 3], [0.0, 1.0, 0.0], 60.0, 1.4)?,
+            filter: BoxFilter,
+            paths: Paths::default(),
+        })
+    }
+
+    #[test]
+    fn packets_give_the_bits_of_single_paths_among_spheres_of_any_law() {
+        let sky = || {
+            let pixel = |i: u64| [0, 1, 2].map(|k| unit_f32(hash(14, 3 * i + k)).powi(8));
+            let pixels: Vec<_> = (0..512).map(pixel).collect();
+            Sky::new(32, &pixels, DMat3::from_rotation_x(0.4)).unwrap()
+        };
+        let constant = Constant::new([0.2, 0.3, 0.4]).unwrap();
+        let tiles = || {
+            let colors = [0.9, 0.1].map(|color| Uniform::from(color).into());
+            Texture::from(Checkerboard::new(
+                colors,
+                Affine2::from_scale(Vec2::splat(8.0)),
+            ))
+        };
+        let grey = Uniform::from(0.4);
+        agree(&balls::<_, AreaLights, _>(true, grey, NoEnvironment).unwrap());
+        agree(&balls::<_, AreaLights, _>(true, grey, constant).unwrap());
+        agree(&balls::<_, AreaLights, _>(true, grey, sky()).unwrap());
+        agree(&balls::<_, NoLight, _>(false, grey, sky()).unwrap());
+        let around = |background| Surroundings::new(Vec::new(), background).unwrap();
+        let surroundings = around(Background::Sky(Box::new(sky())));
+        agree(&balls::<_, NoLight, _>(false, grey, surroundings).unwrap());
+        agree(&balls::<_, AreaLights, _>(true, tiles(), sky()).unwrap());
+        agree(&balls::<_, NoLight, _>(false, tiles(), constant).unwrap());
+    }
+
     #[test]
     fn other_scenes_have_no_packets() {
-        assert!(scenes::environment().scene.packet().is_none());
-        assert!(scenes::cornell_box_specular().scene.packet().is_none());
         let dark = room::<AreaLights, _>(false, NoEnvironment).unwrap();
         assert!(dark.scene.packet().is_none());
     }

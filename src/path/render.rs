@@ -6,11 +6,17 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use glam::{DVec3, Vec3, Vec3A};
 
 use super::bsdf::Bsdf;
+#[cfg(feature = "simd")]
+use super::bsdf::{Scattered, Scattering};
 use super::filter::{BoxFilter, Filter};
+#[cfg(feature = "simd")]
+use super::geometry::Hit;
 use super::image::{Image, Row};
+#[cfg(feature = "simd")]
+use super::light::Sky;
 use super::light::{Environment, Light};
 #[cfg(feature = "simd")]
-use super::packet::Packet;
+use super::packet::{Packet, Single};
 use super::roulette::Steps;
 use super::sensor::Sensor;
 use super::{Paths, Ray, Scene};
@@ -63,6 +69,29 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Pixel<'_, B, L, E,
 }
 
 #[cfg(feature = "simd")]
+impl<U: Sampler, B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Single<U>
+    for Pixel<'_, B, L, E, C, F>
+{
+    fn start(&self, u: &mut U) -> Start {
+        Pixel::start(self, u)
+    }
+
+    fn evaluate(&self, at: &Hit, out: Vec3A, into: Vec3A) -> Scattering {
+        let vertex = self.scene.vertex(*at);
+        vertex.bsdf.evaluate(&vertex.surface, out, into)
+    }
+
+    fn sample(&self, at: &Hit, out: Vec3A, u: &mut U) -> Option<Scattered> {
+        let vertex = self.scene.vertex(*at);
+        vertex.bsdf.sample(&vertex.surface, out, u)
+    }
+
+    fn sky(&self) -> Option<&Sky> {
+        self.scene.environment().as_sky()
+    }
+}
+
+#[cfg(feature = "simd")]
 impl<B, L, E, C, F> Pixel<'_, B, L, E, C, F> {
     /// The scene for many paths at once, if it is one of those and the paths are too.
     #[inline]
@@ -91,10 +120,10 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
     fn evaluate_many<S: Sampler>(&self, samplers: &mut [S], values: &mut [Vec3]) {
         #[cfg(feature = "simd")]
         if let Some(packet) = self.packet() {
-            return packet.radiance(self.paths, &|u| self.start(u), samplers, values);
+            return packet.radiance(self.paths, self, samplers, values);
         }
         for (u, value) in samplers.iter_mut().zip(values) {
-            *value = self.evaluate(u);
+            *value = Integrand::evaluate(self, u);
         }
     }
 

@@ -5,12 +5,15 @@ mod parts;
 
 use std::sync::Arc;
 
+#[cfg(feature = "simd")]
+use glam::Vec3A;
+
 use super::bsdf::{Bsdf, Material};
 use super::geometry::{Copied, Geometry, Hit};
 use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment};
 use super::object::{Instances, Object, Radiance};
 #[cfg(feature = "simd")]
-use super::packet::{Emitted, Optics, Packet};
+use super::packet::{Emitted, Law, Optics, Packet};
 use super::ray::{Ray, Surface};
 use super::resolution::{check_object, check_scene};
 use super::segment::{End, Segment};
@@ -121,8 +124,9 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
                 copies.push(copy);
             }
         }
-        let at_once =
-            parts.are_plain(&shapes) && copies.is_empty() && environment.constant().is_some();
+        let at_once = parts.are_plain(&shapes)
+            && copies.is_empty()
+            && (environment.constant().is_some() || environment.as_sky().is_some());
         let geometry = Geometry::new(shapes, meshes, copies);
         check_scene(geometry.bounds())?;
         let mut emitters = parts.emitters;
@@ -153,11 +157,13 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
     /// The scene for many paths at once, if it is one of those.
     #[cfg(feature = "simd")]
     fn packed(&self) -> Option<Packet> {
-        let sky = self.environment.constant()?;
+        let around = match self.environment.as_sky() {
+            Some(_) => Vec3A::ZERO,
+            None => self.environment.constant()?,
+        };
         let lights = self.lights.as_area_lights()?;
         let optics = |shape: usize| {
             let owner = self.owners[shape];
-            let law = self.bsdfs[owner.bsdf as usize].as_lambertian()?;
             let emitted = if owner.emitter == DARK {
                 None
             } else {
@@ -168,12 +174,11 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
                 })
             };
             Some(Optics {
-                albedo: law.albedo,
-                inner: law.has_inside(),
+                law: Law::of(&self.bsdfs[owner.bsdf as usize]),
                 emitted,
             })
         };
-        Packet::new(&self.geometry, optics, lights, sky)
+        Packet::new(&self.geometry, optics, lights, around)
     }
 }
 
@@ -181,16 +186,21 @@ impl<B: Bsdf, L, E> Scene<B, L, E> {
     /// Where the ray first meets a surface.
     #[inline]
     pub fn meet(&self, ray: &Ray) -> Option<Vertex<'_, B>> {
-        let hit = self.geometry.nearest(ray)?;
+        Some(self.vertex(self.geometry.nearest(ray)?))
+    }
+
+    /// The point of the scene that a hit is.
+    #[inline]
+    pub(in crate::path) fn vertex(&self, hit: Hit) -> Vertex<'_, B> {
         let owner = self.owners[hit.part];
         let detail = Detail::from_shading(|| self.geometry.shading(&hit));
-        Some(Vertex {
+        Vertex {
             surface: hit.surface.with(detail),
             bsdf: &self.bsdfs[owner.bsdf as usize],
             emitter: owner.emitter(hit.triangle),
             geometry: &self.geometry,
             hit,
-        })
+        }
     }
 }
 

@@ -78,10 +78,22 @@ impl Piecewise {
     /// The cell that `u` falls into, and where in the cell, in `[0, 1)`.
     #[inline]
     pub(super) fn locate(&self, u: f64) -> (usize, f64) {
-        // The first end above u: the cell before it has room for u, so it is none of weight zero. Ends in parts before
-        // that of u are below it, those in parts after it above.
+        self.locate_in(self.bracket(u), u)
+    }
+
+    /// The first of the ends that may be above `u`, and the one after the last. Ends in parts before that of `u` are below it, those in parts
+    /// after it above.
+    #[inline]
+    pub(super) fn bracket(&self, u: f64) -> [u32; 2] {
         let part = part(u, self.cells());
-        let [first, last] = [self.guide[part], self.guide[part + 1]].map(|end| end as usize);
+        [self.guide[part], self.guide[part + 1]]
+    }
+
+    /// As [`locate`](Self::locate), with the [bracket](Self::bracket) of `u`.
+    #[inline]
+    pub(super) fn locate_in(&self, bracket: [u32; 2], u: f64) -> (usize, f64) {
+        // The first end above u: the cell before it has room for u, so it is none of weight zero.
+        let [first, last] = bracket.map(|end| end as usize);
         let within = self.cumulative[first..last].partition_point(|&end| end <= u);
         let cell = first + within - 1;
         let within = (u - self.cumulative[cell]) / self.probability(cell);

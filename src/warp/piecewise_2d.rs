@@ -56,6 +56,37 @@ impl Piecewise2d {
     }
 }
 
+#[cfg(feature = "path")]
+impl Piecewise2d {
+    /// Replaces points of the square by their samples; at most [`MANY`](Self::MANY).
+    ///
+    /// Step by step for all of them, so that what one waits for in memory the others wait for at the same time.
+    #[inline]
+    pub(crate) fn sample_many(&self, points: &mut [[f64; 2]]) {
+        let mut rows = [0; Self::MANY];
+        let mut brackets = [[0; 2]; Self::MANY];
+        for (point, row) in points.iter_mut().zip(&mut rows) {
+            let (found, within) = self.marginal.locate(point[1]);
+            *row = found;
+            point[1] = self.marginal.place(found, within);
+        }
+        for ((point, &row), bracket) in points.iter().zip(&rows).zip(&mut brackets) {
+            if let Some(row) = &self.rows[row] {
+                *bracket = row.bracket(point[0]);
+            }
+        }
+        for ((point, &row), &bracket) in points.iter_mut().zip(&rows).zip(&brackets) {
+            point[0] = self.rows[row].as_ref().map_or(0.5, |row| {
+                let (cell, within) = row.locate_in(bracket, point[0]);
+                row.place(cell, within)
+            });
+        }
+    }
+
+    /// So many points go together at most.
+    pub(crate) const MANY: usize = 16;
+}
+
 impl Warp<2> for Piecewise2d {
     type Point = [f64; 2];
 

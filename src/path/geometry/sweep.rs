@@ -22,7 +22,7 @@ pub(in crate::path) struct Sweep {
     pub(in crate::path) flat_shapes: Vec<usize>,
     balls: Vec<Balls>,
     /// Which shape each of the spheres is.
-    ball_shapes: Vec<usize>,
+    pub(in crate::path) ball_shapes: Vec<usize>,
     /// The other shapes, and which they are.
     others: Vec<(usize, Primitive)>,
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use ::exr::prelude::{SpecificChannels, Vec2, WritableImage};
 use glam::DVec3;
 
 use super::{FileError, Image};
@@ -29,7 +30,7 @@ impl Image {
         Self::new(width, pixels).map_err(|reason| FileError::new(path, reason))
     }
 
-    /// Writes red, green and blue to an OpenEXR file, in 32-bit floats. The standard errors are an
+    /// Writes red, green and blue to an OpenEXR file, in 32-bit floats; the same picture is the same file to the byte. The standard errors are an
     /// [image of their own](Self::std_error).
     ///
     /// # Errors
@@ -37,10 +38,16 @@ impl Image {
     /// [`FileError`] if the file cannot be written.
     pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<(), FileError> {
         let path = path.as_ref();
-        ::exr::prelude::write_rgb_file(path, self.width, self.height(), |x, y| {
+        let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
             let [r, g, b] = self.mean[y * self.width + x].as_vec3().to_array();
             (r, g, b)
-        })
-        .map_err(|reason| FileError::new(path, reason))
+        });
+        let size = (self.width, self.height());
+        // Several threads would write the tiles in the order in which they are done with them.
+        ::exr::prelude::Image::from_channels(size, channels)
+            .write()
+            .non_parallel()
+            .to_file(path)
+            .map_err(|reason| FileError::new(path, reason))
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 
-use super::{Emission, Illumination};
+use super::{Emission, Illumination, Sky};
 use crate::path::{Surface, color};
 use crate::{Error, Sampler};
 
@@ -16,6 +16,12 @@ pub trait Environment: Sync {
     /// The radiance, if it is the same from everywhere and [`sample`](Self::sample) draws nothing: a scene with such an
     /// environment may be traced many paths at once. `None` unless implemented.
     fn constant(&self) -> Option<Vec3A> {
+        None
+    }
+
+    /// The picture of a sky, if it is that and nothing else: a scene with such an environment may be traced many paths at once. `None`
+    /// unless implemented.
+    fn as_sky(&self) -> Option<&Sky> {
         None
     }
 

@@ -95,24 +95,137 @@ impl Sky {
         )
     }
 
+    /// A direction, and the light from there with its density, which is positive and finite.
+    #[inline]
+    pub(in crate::path) fn draw(&self, u: [f64; 2]) -> Option<(Vec3A, Emission)> {
+        let place = self.directions.sample(u);
+        let (direction, sine) = self.direction(place);
+        let emission = self.emission(place, sine);
+        is_drawn(&emission).then_some((direction, emission))
+    }
+
+    /// The same for many coordinates, which are at most [`MANY`](Self::MANY).
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn draw_many(
+        &self,
+        coordinates: &[[f64; 2]],
+        mut take: impl FnMut(usize, Option<(Vec3A, Emission)>),
+    ) {
+        let mut places = [[0.0; 2]; Self::MANY];
+        let places = &mut places[..coordinates.len()];
+        places.copy_from_slice(coordinates);
+        self.directions.sample_many(places);
+        let mut directions = [(Vec3A::ZERO, 0.0); Self::MANY];
+        for (place, direction) in places.iter().zip(&mut directions) {
+            *direction = self.direction(*place);
+        }
+        let sine = |k: usize| directions[k].1;
+        self.emission_many(places, sine, |k, emission| {
+            take(
+                k,
+                is_drawn(&emission).then_some((directions[k].0, emission)),
+            );
+        });
+    }
+
+    /// As [`emitted`](Environment::emitted) for many directions, which are at most [`MANY`](Self::MANY).
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn emitted_many(
+        &self,
+        directions: &[Vec3A],
+        take: impl FnMut(usize, Emission),
+    ) {
+        let (mut places, mut sines) = ([[0.0; 2]; Self::MANY], [0.0; Self::MANY]);
+        let places = &mut places[..directions.len()];
+        for ((direction, place), sine) in directions.iter().zip(&mut *places).zip(&mut sines) {
+            let found = self.place(*direction);
+            (*place, *sine) = (found.0.map(f64::from), found.1);
+        }
+        self.emission_many(places, |k| sines[k], take);
+    }
+
+    /// As [`emission`](Self::emission), step by step for all places, so that what one waits for in memory the others wait for at
+    /// the same time.
+    #[cfg(feature = "simd")]
+    #[inline]
+    fn emission_many(
+        &self,
+        places: &[[f64; 2]],
+        sine: impl Fn(usize) -> f32,
+        mut take: impl FnMut(usize, Emission),
+    ) {
+        let mut squares = [Square::default(); Self::MANY];
+        let mut corners = [[Vec3A::ZERO; 4]; Self::MANY];
+        for ((place, square), corners) in places.iter().zip(&mut squares).zip(&mut corners) {
+            *square = self.square(*place);
+            *corners = self.corners(square);
+        }
+        for k in 0..places.len() {
+            take(k, self.emission_in(&squares[k], &corners[k], sine(k)));
+        }
+    }
+
+    /// So many go together at most.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) const MANY: usize = Piecewise2d::MANY;
+
+    /// The direction of a place, and the sine of its angle to the zenith.
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+    fn direction(&self, [x, y]: [f64; 2]) -> (Vec3A, f32) {
+        // Angles from the nearer pole keep their digits.
+        let [height, sine] = turn((0.5 * y.min(1.0 - y)) as f32);
+        let cosine = if y < 0.5 { height } else { -height };
+        let turned = x + 0.5 / self.width as f64;
+        let [against, along] = turn(single(turned - turned.floor()));
+        let direction = Vec3A::new(along * sine, cosine, -against * sine);
+        ((self.outward * direction).normalize(), sine)
+    }
+
     /// The light from a place in the squares between pixels, whose angle to the zenith has the given sine. The density is that
     /// of `directions`, by the pixels that are at hand anyway.
+    #[inline]
+    fn emission(&self, place: [f64; 2], sine: f32) -> Emission {
+        let square = self.square(place);
+        self.emission_in(&square, &self.corners(&square), sine)
+    }
+
+    /// The square that a place lies in.
     #[inline]
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "rounds down to a pixel, and to f32"
     )]
-    fn emission(&self, [x, y]: [f64; 2], sine: f32) -> Emission {
+    fn square(&self, [x, y]: [f64; 2]) -> Square {
         let rows = self.density.len();
         let (x, y) = (x * self.width as f64, y * rows as f64);
         let (column, row) = ((x as usize).min(self.width - 1), (y as usize).min(rows - 1));
-        let (s, t) = ((x - column as f64) as f32, (y - row as f64) as f32);
-        let corners = corners(&self.pixels, self.width, row, column);
+        Square {
+            row,
+            column,
+            within: [(x - column as f64) as f32, (y - row as f64) as f32],
+        }
+    }
+
+    #[inline]
+    fn corners(&self, square: &Square) -> [Vec3A; 4] {
+        corners(&self.pixels, self.width, square.row, square.column)
+    }
+
+    /// The light from a place in a square with the given pixels around it.
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+    fn emission_in(&self, square: &Square, corners: &[Vec3A; 4], sine: f32) -> Emission {
+        let Square {
+            row,
+            within: [s, t],
+            ..
+        } = *square;
         let above = corners[0].lerp(corners[1], s);
         let below = corners[2].lerp(corners[3], s);
         let density = if sine > 0.0 {
-            let luminance = f64::from(mean_luminance(corners));
+            let luminance = f64::from(mean_luminance(*corners));
             (luminance * self.density[row] / f64::from(sine)) as f32
         } else {
             0.0
@@ -122,6 +235,20 @@ impl Sky {
             density,
         }
     }
+}
+
+/// Whether light has a density that it can be drawn with.
+#[inline]
+fn is_drawn(emission: &Emission) -> bool {
+    emission.density > 0.0 && emission.density < f32::INFINITY
+}
+
+/// A square between four pixels, and a place in it, in `[0, 1]` each way.
+#[derive(Clone, Copy, Debug, Default)]
+struct Square {
+    row: usize,
+    column: usize,
+    within: [f32; 2],
 }
 
 /// The pixels around a square: two above, two below.
@@ -140,6 +267,10 @@ fn mean_luminance(corners: [Vec3A; 4]) -> f32 {
 }
 
 impl Environment for Sky {
+    fn as_sky(&self) -> Option<&Sky> {
+        Some(self)
+    }
+
     #[inline]
     fn emitted(&self, direction: Vec3A) -> Emission {
         let (place, sine) = self.place(direction);
@@ -147,18 +278,10 @@ impl Environment for Sky {
     }
 
     #[inline]
-    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
-        let [x, y] = self.directions.sample(u.next_2d());
-        // Angles from the nearer pole keep their digits.
-        let [height, sine] = turn((0.5 * y.min(1.0 - y)) as f32);
-        let cosine = if y < 0.5 { height } else { -height };
-        let turned = x + 0.5 / self.width as f64;
-        let [against, along] = turn(single(turned - turned.floor()));
-        let direction = Vec3A::new(along * sine, cosine, -against * sine);
-        let Emission { radiance, density } = self.emission([x, y], sine);
-        (density > 0.0 && density < f32::INFINITY).then(|| Illumination {
-            way: Segment::along(from, (self.outward * direction).normalize()),
+        let (direction, Emission { radiance, density }) = self.draw(u.next_2d())?;
+        Some(Illumination {
+            way: Segment::along(from, direction),
             weight: radiance / density,
             density,
         })

@@ -118,6 +118,13 @@ impl Surroundings {
 }
 
 impl Environment for Surroundings {
+    fn as_sky(&self) -> Option<&Sky> {
+        match &self.background {
+            Background::Sky(sky) if self.sources.is_empty() => Some(sky),
+            _ => None,
+        }
+    }
+
     #[inline]
     #[expect(clippy::cast_possible_truncation, reason = "a half or one")]
     fn emitted(&self, direction: Vec3A) -> Emission {

@@ -3,6 +3,7 @@
 use glam::Vec3A;
 use pulp::Simd;
 
+use super::optics::Optics;
 use crate::path::lanes::{Real, Row, Vector, WIDEST};
 use crate::path::shape::Flat;
 
@@ -25,25 +26,9 @@ pub(super) struct Table {
     albedo: [Column; 3],
     radiance: [Column; 3],
     chance: Column,
+    kind: Column,
     inner: Column,
-}
-
-/// What a shape does to light.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::path) struct Optics {
-    pub(in crate::path) albedo: Vec3A,
-    /// Whether the inner side scatters as the outer one does, or is black.
-    pub(in crate::path) inner: bool,
-    pub(in crate::path) emitted: Option<Emitted>,
-}
-
-/// What the outer side of a shape emits.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::path) struct Emitted {
-    pub(in crate::path) emitter: u32,
-    pub(in crate::path) radiance: Vec3A,
-    /// The probability with which it is chosen among the lights.
-    pub(in crate::path) probability: f32,
+    part: [u32; MOST],
 }
 
 const NOTHING: Column = [0.0; MOST];
@@ -61,10 +46,13 @@ impl Table {
         albedo: [NOTHING; 3],
         radiance: [NOTHING; 3],
         chance: NOTHING,
+        kind: NOTHING,
         inner: NOTHING,
+        part: [0; MOST],
     };
 
-    pub(super) fn set(&mut self, shape: usize, flat: &Flat, optics: &Optics) {
+    /// A flat shape, which is the part `part` of the scene.
+    pub(super) fn set(&mut self, shape: usize, part: u32, flat: &Flat, optics: &Optics) {
         let (radiance, chance) = match optics.emitted {
             Some(light) => (light.radiance, light.probability),
             None => (Vec3A::ZERO, DARK),
@@ -74,7 +62,7 @@ impl Table {
             self.first_edge[axis][shape] = flat.first_edge[axis];
             self.second_edge[axis][shape] = flat.second_edge[axis];
             self.normal[axis][shape] = flat.normal[axis];
-            self.albedo[axis][shape] = optics.albedo[axis];
+            self.albedo[axis][shape] = optics.law.albedo[axis];
             self.radiance[axis][shape] = radiance[axis];
         }
         self.inset[0][shape] = flat.inset[0];
@@ -83,7 +71,9 @@ impl Table {
         self.margin[shape] = flat.margin;
         self.area[shape] = flat.area;
         self.chance[shape] = chance;
-        self.inner[shape] = if optics.inner { 1.0 } else { 0.0 };
+        self.kind[shape] = optics.law.kind();
+        self.inner[shape] = optics.law.inner();
+        self.part[shape] = part;
     }
 
     /// The shapes of all lanes.
@@ -172,6 +162,17 @@ impl Table {
     #[inline(always)]
     pub(super) fn slant<S: Simd>(&self, simd: S, shapes: &Row<u32>) -> Real<S> {
         Self::number(simd, &self.slant, shapes)
+    }
+
+    #[inline(always)]
+    pub(super) fn kind<S: Simd>(&self, simd: S, shapes: &Row<u32>) -> Real<S> {
+        Self::number(simd, &self.kind, shapes)
+    }
+
+    /// Which part of the scene the shapes are.
+    #[inline(always)]
+    pub(super) fn parts(&self, shapes: &Row<u32>) -> Row<u32> {
+        Row(shapes.0.map(|shape| self.part[shape as usize % MOST]))
     }
 
     #[inline(always)]

@@ -5,7 +5,7 @@ use pulp::Simd;
 
 use crate::path::geometry::{Kind, axis};
 use crate::path::lanes::{Index, Mask, Real, Vector};
-use crate::path::shape::Flat;
+use crate::path::shape::{Flat, Sphere};
 
 /// The shapes, by how simple their equations are.
 #[derive(Debug, Default)]
@@ -13,6 +13,15 @@ pub(super) struct Shapes {
     aligned: [Vec<Aligned>; 3],
     parallelograms: Vec<Numbered>,
     triangles: Vec<Numbered>,
+    balls: Vec<Ball>,
+}
+
+/// A sphere.
+#[derive(Clone, Copy, Debug)]
+struct Ball {
+    shape: u32,
+    center: Vec3A,
+    squared_radius: f32,
 }
 
 /// A rectangle whose normal is the axis `k` and whose edges run along the axes `k + 1` and `k + 2`, modulo 3.
@@ -110,6 +119,15 @@ impl Shapes {
         }
     }
 
+    /// Adds a sphere. All flat shapes must have been added before.
+    pub(super) fn push_ball(&mut self, shape: u32, sphere: &Sphere) {
+        self.balls.push(Ball {
+            shape,
+            center: sphere.center(),
+            squared_radius: sphere.squared_radius(),
+        });
+    }
+
     /// The nearest shape in each lane.
     #[inline(always)]
     pub(super) fn nearest<S: Simd>(
@@ -141,6 +159,9 @@ impl Shapes {
         }
         for flat in &self.triangles {
             hit = hit.nearer(flat.shape, flat.triangle(simd, origin, direction));
+        }
+        for ball in &self.balls {
+            hit = hit.nearer(ball.shape, ball.meet(simd, origin, direction));
         }
         hit
     }
@@ -174,7 +195,35 @@ impl Shapes {
             let met = flat.triangle(simd, origin, direction);
             blocked = blocked | (met.inside & met.distance.lt(limit));
         }
+        for ball in &self.balls {
+            let met = ball.meet(simd, origin, direction);
+            blocked = blocked | (met.inside & met.distance.lt(limit));
+        }
         blocked
+    }
+}
+
+impl Ball {
+    /// As [`Sphere::intersect`](crate::path::shape::Shape::intersect); no coordinates.
+    #[inline(always)]
+    fn meet<S: Simd>(&self, simd: S, origin: Vector<S>, direction: Vector<S>) -> Meeting<S> {
+        let zero = Real::splat(simd, 0.0);
+        let squared_radius = Real::splat(simd, self.squared_radius);
+        let offset = Vector::splat(simd, self.center) - origin;
+        let middle = offset.dot(direction);
+        let apart = offset - direction * middle;
+        let discriminant = squared_radius - apart.dot(apart);
+        let far = middle + discriminant.sqrt().copysign(middle);
+        let near = (offset.dot(offset) - squared_radius) / far;
+        let ordered = near.lt(far);
+        let (first, second) = (ordered.select(near, far), ordered.select(far, near));
+        let distance = first.gt(zero).select(first, second);
+        Meeting {
+            distance,
+            s: zero,
+            t: zero,
+            inside: discriminant.ge(zero) & distance.gt(zero),
+        }
     }
 }
 

@@ -1,24 +1,30 @@
 //! The radiance loop, a path a lane.
 
-use core::f32::consts::{FRAC_1_PI, FRAC_PI_4};
+use core::f32::consts::FRAC_1_PI;
 
 use glam::{Vec3, Vec3A};
 use pulp::{Simd, WithSimd};
 
-use super::meshes::{Meshes, Rays};
+use super::drawn::{Hits, Lamp, Scatters, SkyLight};
+use super::math::{around, cosine_hemisphere, power};
 use super::near::Drawn;
+use super::optics::{DELTA, OTHER};
 use super::place::DARK;
-use super::{Packet, Start};
+use super::solids::{Rays, Solids, passes};
+use super::sweep::Shapes;
+use super::{Packet, Single, Start};
 use crate::Sampler;
 use crate::path::frame::single;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
+use crate::path::light::Sky;
 use crate::path::{Paths, gamma};
 
 /// The paths of some points.
 pub(super) struct Walk<'a, U> {
     pub(super) packet: &'a Packet,
     pub(super) paths: Paths,
-    pub(super) start: &'a dyn Fn(&mut U) -> Start,
+    pub(super) single: &'a dyn Single<U>,
+    pub(super) sky: Option<&'a Sky>,
     pub(super) points: &'a mut [U],
     pub(super) values: &'a mut [Vec3],
 }
@@ -30,6 +36,7 @@ struct State {
     throughput: [Row<f32>; 3],
     radiance: [Row<f32>; 3],
     density: Row<f32>,
+    eta: Row<f32>,
     /// Zero in a lane without a path.
     segment: Row<f32>,
     weight: Row<f32>,
@@ -44,6 +51,7 @@ impl State {
         throughput: [Row::<f32>::ZERO; 3],
         radiance: [Row::<f32>::ZERO; 3],
         density: Row::<f32>::ZERO,
+        eta: Row::<f32>::ZERO,
         segment: Row::<f32>::ZERO,
         weight: Row::<f32>::ZERO,
         point: [usize::MAX; WIDEST],
@@ -59,6 +67,7 @@ impl State {
         }
         // The density of the camera's direction, which is no choice.
         self.density.0[lane] = f32::INFINITY;
+        self.eta.0[lane] = 1.0;
         self.segment.0[lane] = 1.0;
         self.weight.0[lane] = weight;
         self.point[lane] = point;
@@ -91,7 +100,7 @@ impl<U: Sampler> WithSimd for Walk<'_, U> {
                     running -= 1;
                 }
                 if begun < self.points.len() {
-                    let start = (self.start)(&mut self.points[begun]);
+                    let start = self.single.start(&mut self.points[begun]);
                     state.begin(lane, begun, start);
                     begun += 1;
                     running += 1;
@@ -105,6 +114,18 @@ impl<U: Sampler> WithSimd for Walk<'_, U> {
     }
 }
 
+/// Where the paths are.
+struct Here<S: Simd> {
+    /// The normal that light is scattered by.
+    shading: Vector<S>,
+    /// The cosine between it and the way that the path came.
+    facing: Real<S>,
+    /// Of the ideally diffuse law.
+    albedo: Vector<S>,
+    /// Where the law is another.
+    other: Mask<S>,
+}
+
 impl<U: Sampler> Walk<'_, U> {
     /// Takes every path one segment on, as an iteration of [`Paths::radiance`] does.
     #[inline(always)]
@@ -113,9 +134,11 @@ impl<U: Sampler> Walk<'_, U> {
             table,
             shapes,
             dividing,
-            meshes,
+            solids,
+            others,
             ..
         } = self.packet;
+        let others = *others;
         let (zero, one) = (Real::splat(simd, 0.0), Real::splat(simd, 1.0));
         let origin = Vector::load(simd, &state.origin);
         let direction = Vector::load(simd, &state.direction);
@@ -127,23 +150,32 @@ impl<U: Sampler> Walk<'_, U> {
         let hit = shapes.nearest(simd, origin, direction);
         let walking = segment.gt(zero);
         let mut met = walking & hit.distance.lt(Real::splat(simd, f32::INFINITY));
-        let triangles = meshes.as_ref().map(|meshes| {
-            meshes.nearest(&Rays {
+        let mut shape = Row::<u32>::ZERO;
+        hit.shape.store(&mut shape);
+        let solids = solids.as_ref().map(|solids| {
+            let rays = Rays {
                 origin: &state.origin,
                 direction: &state.direction,
                 limit: &hit.distance.row(),
                 active: &walking.row(simd),
-            })
+            };
+            solids.nearest(&rays, &shape)
         });
-        if let Some(triangles) = &triangles {
-            met = met | triangles.met(simd);
+        if let Some(solids) = &solids {
+            met = met | solids.met(simd);
         }
-        if self.packet.sky != Vec3A::ZERO {
-            let sum = radiance + throughput * Vector::splat(simd, self.packet.sky);
-            radiance = (walking & !met).choose(sum, radiance);
+        let missed = walking & !met;
+        if let Some(sky) = self.sky {
+            if missed.any() {
+                let light = SkyLight::emitted(sky, &state.direction, &missed.row(simd));
+                let other = light.density(simd);
+                let sum = radiance + throughput * light.weight(simd) * power(density, other);
+                radiance = missed.choose(sum, radiance);
+            }
+        } else if self.packet.around != Vec3A::ZERO {
+            let sum = radiance + throughput * Vector::splat(simd, self.packet.around);
+            radiance = missed.choose(sum, radiance);
         }
-        let mut shape = Row::<u32>::ZERO;
-        hit.shape.store(&mut shape);
         let mut here = table.places(simd, &shape);
         let mut point = {
             let [low_s, low_t] = table.inset(simd, &shape);
@@ -156,16 +188,14 @@ impl<U: Sampler> Walk<'_, U> {
                 here.at(s, t)
             }
         };
-
-        // The normal that light is scattered by.
         let mut shading = here.normal;
-        if let Some(triangles) = &triangles {
-            let met = triangles.met(simd);
-            point = met.choose(triangles.point(simd), point);
-            here.normal = met.choose(triangles.normal(simd), here.normal);
-            here.margin = met.select(triangles.margin(simd), here.margin);
+        if let Some(solids) = &solids {
+            let met = solids.met(simd);
+            point = met.choose(solids.point(simd), point);
+            here.normal = met.choose(solids.normal(simd), here.normal);
+            here.margin = met.select(solids.margin(simd), here.margin);
             here.chance = met.select(Real::splat(simd, DARK), here.chance);
-            shading = met.choose(triangles.shading(simd), here.normal);
+            shading = met.choose(solids.shading(simd), here.normal);
         }
 
         // Emitted light, met by a direction that was drawn at the surface before.
@@ -184,8 +214,8 @@ impl<U: Sampler> Walk<'_, U> {
         let mut walking = met & segment.lt(Real::splat(simd, self.paths.longest as f32));
         if self.packet.one_sided {
             let mut inner = table.inner(simd, &shape);
-            if let Some(triangles) = &triangles {
-                inner = (triangles.met(simd)).select(triangles.inner(simd), inner);
+            if let Some(solids) = &solids {
+                inner = (solids.met(simd)).select(solids.inner(simd), inner);
             }
             walking = walking & (inner.gt(zero) | facing.gt(zero));
         }
@@ -195,15 +225,59 @@ impl<U: Sampler> Walk<'_, U> {
             return;
         }
         let mut albedo = table.albedo(simd, &shape);
-        if let Some(triangles) = &triangles {
-            albedo = (triangles.met(simd)).choose(triangles.albedo(simd), albedo);
+        let mut kind = if others {
+            table.kind(simd, &shape)
+        } else {
+            zero
+        };
+        if let Some(solids) = &solids {
+            albedo = (solids.met(simd)).choose(solids.albedo(simd), albedo);
+            kind = (solids.met(simd)).select(solids.kind(simd), kind);
         }
+        let at = Here {
+            shading,
+            facing,
+            albedo,
+            other: kind.ge(Real::splat(simd, OTHER)),
+        };
+        let hits = others.then(|| {
+            let mut part = table.parts(&shape);
+            let mut triangle = Row::<u32>::ZERO;
+            if let Some(solids) = &solids {
+                solids.name(&mut part, &mut triangle);
+            }
+            Hits {
+                point: point.rows(),
+                normal: here.normal.rows(),
+                margin: here.margin.row(),
+                part,
+                triangle,
+                direction: &state.direction,
+            }
+        });
 
         let mut chosen = match self.packet.emitters[..] {
             [one] => Row::<u32>::splat(one),
             _ => Row::<u32>::ZERO,
         };
-        let [a, b, c, d] = self.draw(simd, state, walking, &mut chosen);
+        let mut sky = SkyLight::NONE;
+        let mut scattered = Scatters::NONE;
+        let [a, b, c, d] = if others || self.sky.is_some() {
+            let kind = kind.row();
+            self.draw(
+                simd,
+                state,
+                (walking, &kind),
+                hits.as_ref(),
+                (&mut chosen, &mut sky, &mut scattered),
+            )
+        } else {
+            self.draw_diffuse(simd, state, walking, &mut chosen)
+        };
+        let mut seeing = walking;
+        if others {
+            seeing = seeing & kind.lt(Real::splat(simd, DELTA));
+        }
 
         // Next-event estimation: light met by drawing a point of the lights.
         if let [first, rest @ ..] = &self.packet.emitters[..] {
@@ -237,7 +311,7 @@ impl<U: Sampler> Walk<'_, U> {
                 density: there.density_of_area(point, target, area),
             };
             if let Some(near) = &self.packet.near {
-                drawn = near.sample(&chosen, walking, point, [a, b], drawn);
+                drawn = near.sample(&chosen, seeing, point, [a, b], drawn);
             }
             let target = drawn.point;
             let own = there.chance * drawn.density;
@@ -245,75 +319,179 @@ impl<U: Sampler> Walk<'_, U> {
             let start = here.leave(point, toward);
             let way = there.leave(target, -toward) - start;
             let length = way.length();
-            let into = way * (1.0 / length);
-            let cosine = shading.dot(into);
-            let size = cosine.abs();
-            let other = FRAC_1_PI * size;
-            let active = walking
+            let active = seeing
                 & there.normal.dot(point - target).gt(zero)
                 & own.gt(zero)
                 & own.lt(Real::splat(simd, f32::MAX))
-                & length.gt(zero)
-                & (cosine * facing).gt(zero)
-                & other.gt(zero);
-            if active.any() {
-                // Other lanes may have the largest of numbers, whose inverse is a slow one.
-                let own = active.select(own, one);
-                let limit = length * (1.0 - gamma(8));
-                let mut visible = !dividing.occluded(start, into, limit, !active);
-                if let Some(meshes) = meshes {
-                    visible = self.passing(simd, meshes, visible, [start, into], limit);
-                }
-                let value = albedo * (FRAC_1_PI * size);
-                let sum = throughput * value * (light * (1.0 / own)) * power(own, other);
-                radiance = visible.choose(radiance + sum, radiance);
-            }
+                & length.gt(zero);
+            // Other lanes may have the largest of numbers, whose inverse is a slow one.
+            let own = active.select(own, one);
+            let lamp = Lamp {
+                start,
+                into: way * (1.0 / length),
+                limit: length * (1.0 - gamma(8)),
+                weight: light * (1.0 / own),
+                density: own,
+                active,
+            };
+            radiance = self.lit(
+                simd,
+                hits.as_ref(),
+                &at,
+                &lamp,
+                dividing,
+                (throughput, radiance),
+            );
+        }
+        // Light from the sky.
+        if self.sky.is_some() {
+            let own = sky.density(simd);
+            let active = seeing & own.gt(zero);
+            let into = sky.direction(simd);
+            let lamp = Lamp {
+                start: here.leave(point, into),
+                into,
+                limit: Real::splat(simd, f32::INFINITY),
+                weight: sky.weight(simd),
+                density: active.select(own, one),
+                active,
+            };
+            radiance = self.lit(
+                simd,
+                hits.as_ref(),
+                &at,
+                &lamp,
+                shapes,
+                (throughput, radiance),
+            );
         }
 
         // All other light, by drawing a direction.
         let local = cosine_hemisphere(c, d);
-        walking = walking & local.z.gt(zero);
-        throughput *= albedo;
+        let mut eta = Real::load(simd, &state.eta);
+        let (goes_on, mut weight) = (local.z.gt(zero), albedo);
+        let mut drawn = FRAC_1_PI * local.z;
+        let normal = shading * one.copysign(facing);
+        let mut next = around(normal, local);
+        if others {
+            let other = at.other;
+            walking = walking & ((other & scattered.goes_on(simd)) | (!other & goes_on));
+            weight = other.choose(scattered.weight(simd), weight);
+            drawn = other.select(scattered.density(simd), drawn);
+            next = other.choose(scattered.direction(simd), next);
+            eta = eta * other.select(scattered.eta(simd), one);
+        } else {
+            walking = walking & goes_on;
+        }
+        throughput *= weight;
         let playing = walking & segment.ge(Real::splat(simd, self.paths.roulette.from as f32));
         if playing.any() {
-            let weight = self.play(simd, state, playing, throughput.max_element());
+            let carried = throughput.max_element() * (eta * eta);
+            let weight = self.play(simd, state, playing, carried);
             walking = walking & (!playing | weight.gt(zero));
             throughput = playing.choose(throughput * weight, throughput);
         }
-        let normal = shading * one.copysign(facing);
-        let next = around(normal, local);
         here.leave(point, next).store(&mut state.origin);
         next.store(&mut state.direction);
         throughput.store(&mut state.throughput);
         radiance.store(&mut state.radiance);
-        (FRAC_1_PI * local.z).store(&mut state.density);
+        drawn.store(&mut state.density);
+        eta.store(&mut state.eta);
         walking
             .select(segment + 1.0, zero)
             .store(&mut state.segment);
     }
 
-    /// Where no mesh is in the way, among the lanes of `visible`, from a point in a direction.
+    /// The radiance with the light that a lamp adds.
     #[inline(always)]
-    fn passing<S: Simd>(
+    fn lit<S: Simd>(
         &self,
         simd: S,
-        meshes: &Meshes,
-        visible: Mask<S>,
-        [start, into]: [Vector<S>; 2],
-        limit: Real<S>,
-    ) -> Mask<S> {
-        let passes = meshes.passes(&Rays {
-            origin: &start.rows(),
-            direction: &into.rows(),
-            limit: &limit.row(),
-            active: &visible.row(simd),
-        });
-        Real::load(simd, &passes).gt(Real::splat(simd, 0.0))
+        hits: Option<&Hits<'_>>,
+        at: &Here<S>,
+        lamp: &Lamp<S>,
+        between: &Shapes,
+        (throughput, radiance): (Vector<S>, Vector<S>),
+    ) -> Vector<S> {
+        let zero = Real::splat(simd, 0.0);
+        let cosine = at.shading.dot(lamp.into);
+        let size = cosine.abs();
+        let mut other = FRAC_1_PI * size;
+        let mut value = at.albedo * (FRAC_1_PI * size);
+        let mut seen = (cosine * at.facing).gt(zero);
+        if let Some(hits) = hits {
+            let asked = lamp.active & at.other;
+            if asked.any() {
+                let into = lamp.into.rows();
+                let scatterings = hits.evaluate(self.single, &into, &asked.row(simd));
+                value = at.other.choose(scatterings.weight(simd), value);
+                other = at.other.select(scatterings.density(simd), other);
+            }
+            seen = seen | at.other;
+        }
+        let active = lamp.active & seen & other.gt(zero);
+        if !active.any() {
+            return radiance;
+        }
+        let mut visible = !between.occluded(lamp.start, lamp.into, lamp.limit, !active);
+        if let Some(soup) = self.packet.solids.as_ref().and_then(Solids::soup) {
+            let rays = Rays {
+                origin: &lamp.start.rows(),
+                direction: &lamp.into.rows(),
+                limit: &lamp.limit.row(),
+                active: &visible.row(simd),
+            };
+            visible = Real::load(simd, &passes(soup, &rays)).gt(zero);
+        }
+        let sum = throughput * value * lamp.weight * power(lamp.density, other);
+        visible.choose(radiance + sum, radiance)
     }
 
-    /// Two coordinates for a point of the lights, which choose one first, and two for the next direction.
+    /// What the paths draw at their points, where laws are of any kind or the sky is a picture: two coordinates for a point of the lights, which choose one
+    /// first; two for the sky; and two for the next direction of the ideally diffuse law, or what others draw.
     #[inline(always)]
     fn draw<S: Simd>(
+        &mut self,
+        simd: S,
+        state: &State,
+        (walking, kinds): (Mask<S>, &Row<f32>),
+        hits: Option<&Hits<'_>>,
+        (chosen, light, scattered): (&mut Row<u32>, &mut SkyLight, &mut Scatters),
+    ) -> [Real<S>; 4] {
+        let lit = !self.packet.emitters.is_empty();
+        let walks = walking.row(simd);
+        let mut u = [Row::<f32>::ZERO; 4];
+        let (mut lanes, mut coordinates, mut count) = ([0; WIDEST], [[0.0; 2]; WIDEST], 0);
+        for lane in (0..S::F32_LANES).filter(|&lane| walks.0[lane] > 0.0) {
+            let sampler = &mut self.points[state.point[lane]];
+            let kind = kinds.0[lane];
+            if lit && kind != DELTA {
+                let [a, b] = sampler.next_2d();
+                let (shape, a) = self.packet.choose(a);
+                chosen.0[lane] = shape;
+                (u[0].0[lane], u[1].0[lane]) = (single(a), single(b));
+            }
+            if self.sky.is_some() && kind != DELTA {
+                (lanes[count], coordinates[count]) = (lane, sampler.next_2d());
+                count += 1;
+            }
+            if kind == 0.0 {
+                let [c, d] = sampler.next_2d();
+                (u[2].0[lane], u[3].0[lane]) = (single(c), single(d));
+            } else if let Some(hits) = hits {
+                let (hit, out) = (hits.hit(lane), hits.out(lane));
+                scattered.set(lane, self.single.sample(&hit, out, sampler));
+            }
+        }
+        if let Some(sky) = self.sky {
+            *light = SkyLight::drawn(sky, &lanes[..count], &coordinates[..count]);
+        }
+        u.map(|row| Real::load(simd, &row))
+    }
+
+    /// The same where all laws are ideally diffuse and no picture is around.
+    #[inline(always)]
+    fn draw_diffuse<S: Simd>(
         &mut self,
         simd: S,
         state: &State,
@@ -375,50 +553,4 @@ impl<U: Sampler> Walk<'_, U> {
         }
         Real::load(simd, &weights)
     }
-}
-
-/// The vector with the given coordinates in the [frame](crate::path::frame::Frame) around a normal.
-#[inline(always)]
-fn around<S: Simd>(normal: Vector<S>, local: Vector<S>) -> Vector<S> {
-    let one = normal.z.all(1.0);
-    let sign = one.copysign(normal.z);
-    let a = -1.0 / (sign + normal.z);
-    let b = normal.x * normal.y * a;
-    let tangent = Vector {
-        x: 1.0 + sign * normal.x * normal.x * a,
-        y: sign * b,
-        z: -sign * normal.x,
-    };
-    let bitangent = Vector {
-        x: b,
-        y: sign + normal.y * normal.y * a,
-        z: -normal.y,
-    };
-    tangent * local.x + bitangent * local.y + normal * local.z
-}
-
-/// As [`cosine_hemisphere`](crate::path::frame::cosine_hemisphere).
-#[inline(always)]
-fn cosine_hemisphere<S: Simd>(u: Real<S>, v: Real<S>) -> Vector<S> {
-    let (a, b) = (2.0 * u - 1.0, 2.0 * v - 1.0);
-    let (zero, one) = (u.all(0.0), u.all(1.0));
-    let wide = a.abs().gt(b.abs());
-    let (radius, other) = (wide.select(a, b), wide.select(b, a));
-    let angle = FRAC_PI_4 * other / radius.eq(zero).select(one, radius);
-    let x = angle * angle;
-    let cosine = 1.0 + x * (-0.5 + x * (1.0 / 24.0 + x * (-1.0 / 720.0 + x * (1.0 / 40320.0))));
-    let sine = angle * (1.0 + x * (-1.0 / 6.0 + x * (1.0 / 120.0 + x * (-1.0 / 5040.0))));
-    Vector {
-        x: radius * wide.select(cosine, sine),
-        y: radius * wide.select(sine, cosine),
-        z: (1.0 - radius * radius).max(zero).sqrt(),
-    }
-}
-
-/// As the `power` of the loop over single paths.
-#[inline(always)]
-fn power<S: Simd>(own: Real<S>, other: Real<S>) -> Real<S> {
-    let (zero, one) = (own.all(0.0), own.all(1.0));
-    let ratio = own.eq(other).select(one, other / own);
-    own.gt(zero).select(1.0 / (1.0 + ratio * ratio), zero)
 }

@@ -101,15 +101,14 @@ impl<B> Parts<B> {
 }
 
 impl<B: Bsdf> Parts<B> {
-    /// Whether the shapes are such that many paths can be followed among them at once: few, flat, and ideally diffuse, and what they
-    /// emit is the same all over.
+    /// Whether the shapes are such that many paths can be followed among them at once: few, flat ones and spheres, and only flat ones
+    /// emit light, the same all over.
     pub(super) fn are_plain(&self, shapes: &[Primitive]) -> bool {
-        let flat = |shape: &Primitive| matches!(shape, Primitive::Flat(_));
-        let law = |owner: &Owner| self.bsdfs[owner.bsdf as usize].as_lambertian();
-        shapes.len() <= FEW
-            && shapes.iter().all(flat)
-            && self.owners.iter().all(|owner| law(owner).is_some())
-            && self.emitters.iter().all(|one| one.picture.is_none())
+        let plain = |shape: &Primitive| matches!(shape, Primitive::Flat(_) | Primitive::Sphere(_));
+        let lamp = |emitter: &Emitter| {
+            emitter.picture.is_none() && matches!(emitter.shape, Primitive::Flat(_))
+        };
+        shapes.len() <= FEW && shapes.iter().all(plain) && self.emitters.iter().all(lamp)
     }
 }
 

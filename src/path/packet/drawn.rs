@@ -1,0 +1,199 @@
+//! What paths draw one lane after the other.
+
+use glam::Vec3A;
+use pulp::Simd;
+
+use super::Single;
+use crate::path::Surface;
+use crate::path::bsdf::Scattered;
+use crate::path::geometry::Hit;
+use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
+use crate::path::light::{Emission, Sky};
+
+/// Light that may arrive.
+pub(super) struct Lamp<S: Simd> {
+    /// Where the way to it starts, where it goes and how far.
+    pub(super) start: Vector<S>,
+    pub(super) into: Vector<S>,
+    pub(super) limit: Real<S>,
+    /// The radiance over the density.
+    pub(super) weight: Vector<S>,
+    pub(super) density: Real<S>,
+    /// Where there is any.
+    pub(super) active: Mask<S>,
+}
+
+/// Directions with weights and densities.
+pub(super) struct Weights {
+    direction: [Row<f32>; 3],
+    weight: [Row<f32>; 3],
+    density: Row<f32>,
+}
+
+impl Weights {
+    const NONE: Self = Self {
+        direction: [Row::<f32>::ZERO; 3],
+        weight: [Row::<f32>::ZERO; 3],
+        density: Row::<f32>::ZERO,
+    };
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, weight: Vec3A, density: f32) {
+        Row::set_vector(&mut self.weight, lane, weight);
+        self.density.0[lane] = density;
+    }
+
+    #[inline(always)]
+    pub(super) fn direction<S: Simd>(&self, simd: S) -> Vector<S> {
+        Vector::load(simd, &self.direction)
+    }
+
+    #[inline(always)]
+    pub(super) fn weight<S: Simd>(&self, simd: S) -> Vector<S> {
+        Vector::load(simd, &self.weight)
+    }
+
+    #[inline(always)]
+    pub(super) fn density<S: Simd>(&self, simd: S) -> Real<S> {
+        Real::load(simd, &self.density)
+    }
+}
+
+/// Light of a sky, with the weight that it has: the radiance, over the density where it was drawn.
+pub(super) struct SkyLight(Weights);
+
+impl core::ops::Deref for SkyLight {
+    type Target = Weights;
+
+    #[inline(always)]
+    fn deref(&self) -> &Weights {
+        &self.0
+    }
+}
+
+impl SkyLight {
+    pub(super) const NONE: Self = Self(Weights::NONE);
+
+    /// The radiance from the directions of the active lanes, and the density with which they are drawn.
+    #[inline(never)]
+    pub(super) fn emitted(sky: &Sky, directions: &[Row<f32>; 3], active: &Row<f32>) -> Self {
+        let mut light = Self::NONE;
+        let mut asked = [Vec3A::ZERO; WIDEST];
+        let (mut lanes, mut count) = ([0; WIDEST], 0);
+        for lane in (0..WIDEST).filter(|&lane| active.0[lane] > 0.0) {
+            (lanes[count], asked[count]) = (lane, Row::vector(directions, lane));
+            count += 1;
+        }
+        sky.emitted_many(&asked[..count], |k, Emission { radiance, density }| {
+            light.0.set(lanes[k], radiance, density);
+        });
+        light
+    }
+
+    /// Directions drawn from coordinates, in some lanes; the density is zero where nothing is to be drawn.
+    #[inline(never)]
+    pub(super) fn drawn(sky: &Sky, lanes: &[usize], coordinates: &[[f64; 2]]) -> Self {
+        let mut light = Self::NONE;
+        sky.draw_many(coordinates, |k, drawn| {
+            if let Some((direction, Emission { radiance, density })) = drawn {
+                Row::set_vector(&mut light.0.direction, lanes[k], direction);
+                light.0.set(lanes[k], radiance / density, density);
+            }
+        });
+        light
+    }
+}
+
+/// What laws of scattering draw that are not ideally diffuse.
+pub(super) struct Scatters {
+    drawn: Weights,
+    eta: Row<f32>,
+    goes_on: Row<f32>,
+}
+
+impl core::ops::Deref for Scatters {
+    type Target = Weights;
+
+    #[inline(always)]
+    fn deref(&self) -> &Weights {
+        &self.drawn
+    }
+}
+
+impl Scatters {
+    pub(super) const NONE: Self = Self {
+        drawn: Weights::NONE,
+        eta: Row::<f32>::ZERO,
+        goes_on: Row::<f32>::ZERO,
+    };
+
+    #[inline(always)]
+    pub(super) fn set(&mut self, lane: usize, scattered: Option<Scattered>) {
+        if let Some(scattered) = scattered {
+            Row::set_vector(&mut self.drawn.direction, lane, scattered.direction);
+            self.drawn.set(lane, scattered.weight, scattered.density);
+            self.eta.0[lane] = scattered.eta;
+            self.goes_on.0[lane] = 1.0;
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn eta<S: Simd>(&self, simd: S) -> Real<S> {
+        Real::load(simd, &self.eta)
+    }
+
+    #[inline(always)]
+    pub(super) fn goes_on<S: Simd>(&self, simd: S) -> Mask<S> {
+        Real::load(simd, &self.goes_on).gt(Real::splat(simd, 0.0))
+    }
+}
+
+/// The points that paths are at, to be asked lane by lane.
+pub(super) struct Hits<'a> {
+    pub(super) point: [Row<f32>; 3],
+    pub(super) normal: [Row<f32>; 3],
+    pub(super) margin: Row<f32>,
+    pub(super) part: Row<u32>,
+    pub(super) triangle: Row<u32>,
+    /// The ways that the paths came.
+    pub(super) direction: &'a [Row<f32>; 3],
+}
+
+impl Hits<'_> {
+    #[inline(always)]
+    pub(super) fn hit(&self, lane: usize) -> Hit {
+        Hit {
+            part: self.part.0[lane] as usize,
+            surface: Surface {
+                point: Row::vector(&self.point, lane),
+                normal: Row::vector(&self.normal, lane),
+                margin: self.margin.0[lane],
+                detail: (),
+            },
+            triangle: self.triangle.0[lane] as usize,
+            copy: None,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn out(&self, lane: usize) -> Vec3A {
+        -Row::vector(self.direction, lane)
+    }
+
+    /// What the laws of the active lanes do for light from some directions.
+    #[inline(never)]
+    pub(super) fn evaluate<U>(
+        &self,
+        single: &dyn Single<U>,
+        into: &[Row<f32>; 3],
+        active: &Row<f32>,
+    ) -> Weights {
+        let mut weights = Weights::NONE;
+        for lane in (0..WIDEST).filter(|&lane| active.0[lane] > 0.0) {
+            let into = Row::vector(into, lane);
+            let scattering = single.evaluate(&self.hit(lane), self.out(lane), into);
+            weights.set(lane, scattering.value, scattering.density);
+        }
+        weights
+    }
+}

@@ -41,6 +41,8 @@ pub use hemisphere::{CosineHemisphere, Hemisphere};
 pub use normal::Normal;
 pub use piecewise::Piecewise;
 pub use piecewise_2d::Piecewise2d;
+#[cfg(feature = "path")]
+pub(crate) use piecewise_2d::Place;
 pub use sphere::Sphere;
 pub use spherical_rectangle::SphericalRectangle;
 pub use spherical_triangle::SphericalTriangle;

@@ -81,8 +81,8 @@ impl Piecewise {
         self.locate_in(self.bracket(u), u)
     }
 
-    /// The first of the ends that may be above `u`, and the one after the last. Ends in parts before that of `u` are below it, those in parts
-    /// after it above.
+    /// The first of the ends that may be above `u`, and the one after the last. Ends in parts before that of `u` are below it, those in
+    /// parts after it above.
     #[inline]
     pub(super) fn bracket(&self, u: f64) -> [u32; 2] {
         let part = part(u, self.cells());

@@ -56,35 +56,35 @@ impl Piecewise2d {
     }
 }
 
+/// A cell, and where in it, in `[0, 1)`.
+#[cfg(feature = "path")]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) column: usize,
+    pub(crate) row: usize,
+    pub(crate) within: [f64; 2],
+}
+
 #[cfg(feature = "path")]
 impl Piecewise2d {
-    /// Replaces points of the square by their samples; at most [`MANY`](Self::MANY).
+    /// The places that [`sample`](Warp::sample) draws, of `N` points or fewer, as many as there are places.
     ///
     /// Step by step for all of them, so that what one waits for in memory the others wait for at the same time.
     #[inline]
-    pub(crate) fn sample_many(&self, points: &mut [[f64; 2]]) {
-        let mut rows = [0; Self::MANY];
-        let mut brackets = [[0; 2]; Self::MANY];
-        for (point, row) in points.iter_mut().zip(&mut rows) {
-            let (found, within) = self.marginal.locate(point[1]);
-            *row = found;
-            point[1] = self.marginal.place(found, within);
-        }
-        for ((point, &row), bracket) in points.iter().zip(&rows).zip(&mut brackets) {
-            if let Some(row) = &self.rows[row] {
-                *bracket = row.bracket(point[0]);
+    pub(crate) fn locate<const N: usize>(&self, points: &[[f64; 2]; N], places: &mut [Place]) {
+        let mut brackets = [[0; 2]; N];
+        for ((&[u, v], place), bracket) in points.iter().zip(&mut *places).zip(&mut brackets) {
+            (place.row, place.within[1]) = self.marginal.locate(v);
+            if let Some(row) = &self.rows[place.row] {
+                *bracket = row.bracket(u);
             }
         }
-        for ((point, &row), &bracket) in points.iter_mut().zip(&rows).zip(&brackets) {
-            point[0] = self.rows[row].as_ref().map_or(0.5, |row| {
-                let (cell, within) = row.locate_in(bracket, point[0]);
-                row.place(cell, within)
-            });
+        for ((&[u, _], place), &bracket) in points.iter().zip(places).zip(&brackets) {
+            let row = self.rows[place.row].as_ref();
+            let found = row.map(|row| row.locate_in(bracket, u));
+            (place.column, place.within[0]) = found.unwrap_or((0, 0.5));
         }
     }
-
-    /// So many points go together at most.
-    pub(crate) const MANY: usize = 16;
 }
 
 impl Warp<2> for Piecewise2d {

@@ -7,7 +7,7 @@ use glam::{DMat3, Mat3A, Vec3, Vec3A};
 use super::{Emission, Environment, Illumination};
 use crate::path::frame::{single, turn, turns};
 use crate::path::{Segment, Surface, color};
-use crate::warp::{Piecewise2d, Warp};
+use crate::warp::{Piecewise2d, Place};
 use crate::{Error, Sampler};
 
 /// Light from all around, by a picture of equal steps in latitude and longitude, interpolated linearly.
@@ -81,130 +81,102 @@ impl Sky {
         })
     }
 
-    /// Where a direction lies in the squares between pixels: `[0, 1)` each way, and the sine of its angle to the zenith.
-    #[inline]
-    fn place(&self, direction: Vec3A) -> ([f32; 2], f32) {
-        let d = self.inward * direction;
-        let sine = (d.x * d.x + d.z * d.z).sqrt();
-        let longitude = turns(d.x, -d.z) - 0.5 / self.width as f32;
-        let latitude = 2.0 * turns(sine, d.y);
-        let within = |u: f32| u.clamp(0.0, 1.0 - f32::EPSILON / 2.0);
-        (
-            [within(longitude - longitude.floor()), within(latitude)],
-            sine,
-        )
-    }
-
-    /// A direction, and the light from there with its density, which is positive and finite.
-    #[inline]
-    pub(in crate::path) fn draw(&self, u: [f64; 2]) -> Option<(Vec3A, Emission)> {
-        let place = self.directions.sample(u);
-        let (direction, sine) = self.direction(place);
-        let emission = self.emission(place, sine);
-        is_drawn(&emission).then_some((direction, emission))
-    }
-
-    /// The same for many coordinates, which are at most [`MANY`](Self::MANY).
-    #[cfg(feature = "simd")]
-    pub(in crate::path) fn draw_many(
-        &self,
-        coordinates: &[[f64; 2]],
-        mut take: impl FnMut(usize, Option<(Vec3A, Emission)>),
-    ) {
-        let mut places = [[0.0; 2]; Self::MANY];
-        let places = &mut places[..coordinates.len()];
-        places.copy_from_slice(coordinates);
-        self.directions.sample_many(places);
-        let mut directions = [(Vec3A::ZERO, 0.0); Self::MANY];
-        for (place, direction) in places.iter().zip(&mut directions) {
-            *direction = self.direction(*place);
-        }
-        let sine = |k: usize| directions[k].1;
-        self.emission_many(places, sine, |k, emission| {
-            take(
-                k,
-                is_drawn(&emission).then_some((directions[k].0, emission)),
-            );
-        });
-    }
-
-    /// As [`emitted`](Environment::emitted) for many directions, which are at most [`MANY`](Self::MANY).
-    #[cfg(feature = "simd")]
-    pub(in crate::path) fn emitted_many(
-        &self,
-        directions: &[Vec3A],
-        take: impl FnMut(usize, Emission),
-    ) {
-        let (mut places, mut sines) = ([[0.0; 2]; Self::MANY], [0.0; Self::MANY]);
-        let places = &mut places[..directions.len()];
-        for ((direction, place), sine) in directions.iter().zip(&mut *places).zip(&mut sines) {
-            let found = self.place(*direction);
-            (*place, *sine) = (found.0.map(f64::from), found.1);
-        }
-        self.emission_many(places, |k| sines[k], take);
-    }
-
-    /// As [`emission`](Self::emission), step by step for all places, so that what one waits for in memory the others wait for at
-    /// the same time.
-    #[cfg(feature = "simd")]
-    #[inline]
-    fn emission_many(
-        &self,
-        places: &[[f64; 2]],
-        sine: impl Fn(usize) -> f32,
-        mut take: impl FnMut(usize, Emission),
-    ) {
-        let mut squares = [Square::default(); Self::MANY];
-        let mut corners = [[Vec3A::ZERO; 4]; Self::MANY];
-        for ((place, square), corners) in places.iter().zip(&mut squares).zip(&mut corners) {
-            *square = self.square(*place);
-            *corners = self.corners(square);
-        }
-        for k in 0..places.len() {
-            take(k, self.emission_in(&squares[k], &corners[k], sine(k)));
-        }
-    }
-
-    /// So many go together at most.
-    #[cfg(feature = "simd")]
-    pub(in crate::path) const MANY: usize = Piecewise2d::MANY;
-
-    /// The direction of a place, and the sine of its angle to the zenith.
-    #[inline]
-    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-    fn direction(&self, [x, y]: [f64; 2]) -> (Vec3A, f32) {
-        // Angles from the nearer pole keep their digits.
-        let [height, sine] = turn((0.5 * y.min(1.0 - y)) as f32);
-        let cosine = if y < 0.5 { height } else { -height };
-        let turned = x + 0.5 / self.width as f64;
-        let [against, along] = turn(single(turned - turned.floor()));
-        let direction = Vec3A::new(along * sine, cosine, -against * sine);
-        ((self.outward * direction).normalize(), sine)
-    }
-
-    /// The light from a place in the squares between pixels, whose angle to the zenith has the given sine. The density is that
-    /// of `directions`, by the pixels that are at hand anyway.
-    #[inline]
-    fn emission(&self, place: [f64; 2], sine: f32) -> Emission {
-        let square = self.square(place);
-        self.emission_in(&square, &self.corners(&square), sine)
-    }
-
-    /// The square that a place lies in.
+    /// The place that a direction has in the picture, and the sine of its angle to the zenith.
     #[inline]
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "rounds down to a pixel, and to f32"
+        reason = "rounds down to a pixel"
     )]
-    fn square(&self, [x, y]: [f64; 2]) -> Square {
-        let rows = self.density.len();
-        let (x, y) = (x * self.width as f64, y * rows as f64);
-        let (column, row) = ((x as usize).min(self.width - 1), (y as usize).min(rows - 1));
-        Square {
-            row,
+    fn place(&self, direction: Vec3A) -> (Square, f32) {
+        let d = self.inward * direction;
+        let sine = (d.x * d.x + d.z * d.z).sqrt();
+        let longitude = turns(d.x, -d.z) - 0.5 / self.width as f32;
+        let latitude = 2.0 * turns(sine, d.y);
+        let cells = |u: f32, count: usize| {
+            let place = u.clamp(0.0, 1.0 - f32::EPSILON / 2.0) * count as f32;
+            let cell = (place as usize).min(count - 1);
+            (cell, place - cell as f32)
+        };
+        let (column, s) = cells(longitude - longitude.floor(), self.width);
+        let (row, t) = cells(latitude, self.density.len());
+        let within = [s, t];
+        let square = Square {
             column,
-            within: [(x - column as f64) as f32, (y - row as f64) as f32],
+            row,
+            within,
+        };
+        (square, sine)
+    }
+
+    /// The direction of a place, and the sine of its angle to the zenith.
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+    fn direction(&self, place: &Place) -> (Vec3A, f32) {
+        let [s, t] = place.within;
+        // Angles from the nearer pole keep their digits.
+        let (y, rows) = (place.row as f64 + t, self.density.len() as f64);
+        let [height, sine] = turn((0.5 * y.min(rows - y) / rows) as f32);
+        let cosine = if y + y < rows { height } else { -height };
+        let x = (place.column as f64 + s + 0.5) / self.width as f64;
+        let [against, along] = turn(single(if x < 1.0 { x } else { x - 1.0 }));
+        let direction = Vec3A::new(along * sine, cosine, -against * sine);
+        ((self.outward * direction).normalize(), sine)
+    }
+
+    /// Draws a direction from each of `N` or fewer points, as many as `count`: told its number, `take` gets it, and the light from there
+    /// with its density, which is positive and finite.
+    #[inline]
+    pub(in crate::path) fn draw<const N: usize>(
+        &self,
+        points: &[[f64; 2]; N],
+        count: usize,
+        mut take: impl FnMut(usize, Vec3A, Emission),
+    ) {
+        let mut places = [Place::default(); N];
+        self.directions.locate(points, &mut places[..count]);
+        let squares = places.map(Square::from);
+        self.emissions(&squares, count, |k, corners| {
+            let (direction, sine) = self.direction(&places[k]);
+            let emission = self.emission(&squares[k], corners, sine);
+            if emission.density > 0.0 && emission.density < f32::INFINITY {
+                take(k, direction, emission);
+            }
+        });
+    }
+
+    /// What [`emitted`](Environment::emitted) gives for `N` or fewer directions, as many as `count`.
+    #[inline]
+    pub(in crate::path) fn emit<const N: usize>(
+        &self,
+        directions: &[Vec3A; N],
+        count: usize,
+        mut take: impl FnMut(usize, Emission),
+    ) {
+        let (mut squares, mut sines) = ([Square::default(); N], [0.0; N]);
+        for (k, &direction) in directions[..count].iter().enumerate() {
+            (squares[k], sines[k]) = self.place(direction);
+        }
+        self.emissions(&squares, count, |k, corners| {
+            take(k, self.emission(&squares[k], corners, sines[k]));
+        });
+    }
+
+    /// The pixels around the first `count` squares: all of them are read before the first is used, so that what one waits for in memory
+    /// the others wait for at the same time.
+    #[inline]
+    fn emissions<const N: usize>(
+        &self,
+        squares: &[Square; N],
+        count: usize,
+        mut take: impl FnMut(usize, &[Vec3A; 4]),
+    ) {
+        let mut read = [[Vec3A::ZERO; 4]; N];
+        for (corners, square) in read.iter_mut().zip(&squares[..count]) {
+            *corners = self.corners(square);
+        }
+        for (k, corners) in read[..count].iter().enumerate() {
+            take(k, corners);
         }
     }
 
@@ -213,20 +185,17 @@ impl Sky {
         corners(&self.pixels, self.width, square.row, square.column)
     }
 
-    /// The light from a place in a square with the given pixels around it.
+    /// The light from a place in a square with the given pixels around it, whose angle to the zenith has the given sine. The density is
+    /// that of `directions`, by the pixels that are at hand anyway.
     #[inline]
     #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-    fn emission_in(&self, square: &Square, corners: &[Vec3A; 4], sine: f32) -> Emission {
-        let Square {
-            row,
-            within: [s, t],
-            ..
-        } = *square;
+    fn emission(&self, square: &Square, corners: &[Vec3A; 4], sine: f32) -> Emission {
+        let [s, t] = square.within;
         let above = corners[0].lerp(corners[1], s);
         let below = corners[2].lerp(corners[3], s);
         let density = if sine > 0.0 {
             let luminance = f64::from(mean_luminance(*corners));
-            (luminance * self.density[row] / f64::from(sine)) as f32
+            (luminance * self.density[square.row] / f64::from(sine)) as f32
         } else {
             0.0
         };
@@ -237,18 +206,24 @@ impl Sky {
     }
 }
 
-/// Whether light has a density that it can be drawn with.
-#[inline]
-fn is_drawn(emission: &Emission) -> bool {
-    emission.density > 0.0 && emission.density < f32::INFINITY
-}
-
 /// A square between four pixels, and a place in it, in `[0, 1]` each way.
 #[derive(Clone, Copy, Debug, Default)]
 struct Square {
-    row: usize,
     column: usize,
+    row: usize,
     within: [f32; 2],
+}
+
+impl From<Place> for Square {
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+    fn from(place: Place) -> Self {
+        Self {
+            column: place.column,
+            row: place.row,
+            within: place.within.map(|x| x as f32),
+        }
+    }
 }
 
 /// The pixels around a square: two above, two below.
@@ -273,13 +248,17 @@ impl Environment for Sky {
 
     #[inline]
     fn emitted(&self, direction: Vec3A) -> Emission {
-        let (place, sine) = self.place(direction);
-        self.emission(place.map(f64::from), sine)
+        let (square, sine) = self.place(direction);
+        self.emission(&square, &self.corners(&square), sine)
     }
 
     #[inline]
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
-        let (direction, Emission { radiance, density }) = self.draw(u.next_2d())?;
+        let mut drawn = None;
+        self.draw(&[u.next_2d()], 1, |_, direction, emission| {
+            drawn = Some((direction, emission));
+        });
+        let (direction, Emission { radiance, density }) = drawn?;
         Some(Illumination {
             way: Segment::along(from, direction),
             weight: radiance / density,
@@ -295,6 +274,7 @@ mod tests {
 
     use crate::path::Surface;
     use crate::points::{HashedOwen, PointSet, Sobol};
+    use crate::warp::Warp;
 
     fn here() -> Surface {
         Surface {
@@ -313,6 +293,22 @@ mod tests {
             })
             .collect();
         Sky::new(5, &pixels, turn).unwrap()
+    }
+
+    /// The light from a place of the unit square.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "rounds down to a pixel"
+    )]
+    fn emission(sky: &Sky, [x, y]: [f64; 2], sine: f32) -> Emission {
+        let (x, y) = (x * sky.width as f64, y * sky.density.len() as f64);
+        let square = Square {
+            row: y as usize,
+            column: x as usize,
+            within: [x.fract() as f32, y.fract() as f32],
+        };
+        sky.emission(&square, &sky.corners(&square), sine)
     }
 
     #[test]
@@ -360,7 +356,7 @@ mod tests {
                 let area = (PI * y).sin() * (PI / f64::from(steps)).powi(2);
                 #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
                 let area = area as f32;
-                expected += sky.emission([x, y], 1.0).radiance * area;
+                expected += emission(&sky, [x, y], 1.0).radiance * area;
             }
         }
         assert!((integral / expected - 1.0).abs().max_element() < 2e-3);
@@ -377,7 +373,7 @@ mod tests {
                 let sine = (PI * place[1]).sin();
                 let expected = sky.directions.density(place) / (2.0 * PI * PI * sine);
                 #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-                let emission = sky.emission(place, sine as f32);
+                let emission = emission(&sky, place, sine as f32);
                 let ratio = f64::from(emission.density) / expected;
                 assert!((ratio - 1.0).abs() < 1e-5, "{place:?}: {ratio}");
             }

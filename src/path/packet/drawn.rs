@@ -84,7 +84,7 @@ impl SkyLight {
             (lanes[count], asked[count]) = (lane, Row::vector(directions, lane));
             count += 1;
         }
-        sky.emitted_many(&asked[..count], |k, Emission { radiance, density }| {
+        sky.emit(&asked, count, |k, Emission { radiance, density }| {
             light.0.set(lanes[k], radiance, density);
         });
         light
@@ -92,14 +92,13 @@ impl SkyLight {
 
     /// Directions drawn from coordinates, in some lanes; the density is zero where nothing is to be drawn.
     #[inline(never)]
-    pub(super) fn drawn(sky: &Sky, lanes: &[usize], coordinates: &[[f64; 2]]) -> Self {
+    pub(super) fn drawn(sky: &Sky, lanes: &[usize], coordinates: &[[f64; 2]; WIDEST]) -> Self {
         let mut light = Self::NONE;
-        sky.draw_many(coordinates, |k, drawn| {
-            if let Some((direction, Emission { radiance, density })) = drawn {
-                Row::set_vector(&mut light.0.direction, lanes[k], direction);
-                light.0.set(lanes[k], radiance / density, density);
-            }
-        });
+        let take = |k: usize, direction, Emission { radiance, density }| {
+            Row::set_vector(&mut light.0.direction, lanes[k], direction);
+            light.0.set(lanes[k], radiance / density, density);
+        };
+        sky.draw(coordinates, lanes.len(), take);
         light
     }
 }

@@ -484,7 +484,7 @@ impl<U: Sampler> Walk<'_, U> {
             }
         }
         if let Some(sky) = self.sky {
-            *light = SkyLight::drawn(sky, &lanes[..count], &coordinates[..count]);
+            *light = SkyLight::drawn(sky, &lanes[..count], &coordinates);
         }
         u.map(|row| Real::load(simd, &row))
     }

@@ -44,8 +44,7 @@ pub struct Pixel<'a, B, L, E, C, F = BoxFilter> {
 /// Coordinates computed ahead of paths that the surroundings soon end: those of the film and of two surfaces.
 const AHEAD: u32 = 10;
 
-/// Coordinates computed ahead where nothing is around the scene, or paths go in packets, in which one that needs more of them
-/// than others holds them up.
+/// Coordinates computed ahead where nothing is around the scene.
 const FAR_AHEAD: u32 = 34;
 
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Pixel<'_, B, L, E, C, F> {
@@ -128,10 +127,6 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
     }
 
     fn dimensions(&self) -> u32 {
-        #[cfg(feature = "simd")]
-        if self.packet().is_some() {
-            return FAR_AHEAD;
-        }
         if self.scene.environment().constant() == Some(Vec3A::ZERO) {
             FAR_AHEAD
         } else {

@@ -55,6 +55,14 @@ pub(in crate::path) struct Found {
     pub(in crate::path) distance: f32,
 }
 
+/// Few shapes, and meshes.
+#[cfg(feature = "simd")]
+pub(in crate::path) struct Few<'a> {
+    pub(in crate::path) shapes: &'a [Primitive],
+    pub(in crate::path) sweep: &'a Sweep,
+    pub(in crate::path) soup: Option<&'a Arc<Soup>>,
+}
+
 /// The nearest shape that a ray meets.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::path) struct Hit {
@@ -172,11 +180,13 @@ impl Geometry {
 
     /// The shapes, if they are few and meshes are all else.
     #[cfg(feature = "simd")]
-    pub(in crate::path) fn few(&self) -> Option<(&[Primitive], &Sweep, Option<&Arc<Soup>>)> {
+    pub(in crate::path) fn few(&self) -> Option<Few<'_>> {
         match &self.search {
-            Search::Sweep(sweep) if self.copies.is_none() => {
-                Some((&self.shapes, sweep, self.soup.as_ref()))
-            }
+            Search::Sweep(sweep) if self.copies.is_none() => Some(Few {
+                shapes: &self.shapes,
+                sweep,
+                soup: self.soup.as_ref(),
+            }),
             _ => None,
         }
     }

@@ -17,7 +17,7 @@ use glam::{Vec3, Vec3A};
 
 use super::Paths;
 use super::bsdf::{Scattered, Scattering};
-use super::geometry::{Geometry, Hit};
+use super::geometry::{Few, Geometry, Hit};
 use super::light::{AreaLights, Sky};
 use super::render::Start;
 use super::shape::Primitive;
@@ -76,7 +76,11 @@ impl Packet {
         lights: &AreaLights,
         around: Vec3A,
     ) -> Option<Self> {
-        let (primitives, sweep, soup) = geometry.few()?;
+        let Few {
+            shapes: primitives,
+            sweep,
+            soup,
+        } = geometry.few()?;
         let (flats, spheres) = (&sweep.flat_shapes, &sweep.ball_shapes);
         if flats.len() + spheres.len() != primitives.len() || primitives.len() > MOST {
             return None;

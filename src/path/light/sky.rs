@@ -146,6 +146,7 @@ impl Sky {
     }
 
     /// What [`emitted`](Environment::emitted) gives for `N` or fewer directions, as many as `count`.
+    #[cfg(feature = "simd")]
     #[inline]
     pub(in crate::path) fn emit<const N: usize>(
         &self,

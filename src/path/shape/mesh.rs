@@ -181,6 +181,7 @@ impl Mesh {
     }
 
     /// The normal that light is scattered by at a point of a triangle.
+    #[cfg(feature = "simd")]
     #[inline]
     pub(in crate::path) fn normal(&self, triangle: usize, flat: &Flat, surface: &Surface) -> Vec3A {
         self.normal_along(triangle, flat, flat.along(surface))

@@ -36,12 +36,22 @@ PINNED = "3.9.1"
 SAMPLERS = ["independent", "multijitter"]
 
 
+def included(file: Path) -> str:
+    """The text of a scene with that of the files it includes in their places."""
+
+    def content(match: re.Match[str]) -> str:
+        text = included(file.parent / match.group(1))
+        return re.sub(r"<\?xml.*?\?>|</?scene\b[^>]*>", "", text, flags=re.DOTALL)
+
+    return re.sub(r'<include\s+filename="([^"$]+)"\s*/>', content, file.read_text())
+
+
 class Mitsuba:
     """A scene with one of Mitsuba's samplers."""
 
     def __init__(self, file: Path, sampler: str, values: dict[str, str]):
         self.name = f"mitsuba {sampler}"
-        text, count = re.subn(r'<sampler\s+type="\w+"', f'<sampler type="{sampler}"', file.read_text())
+        text, count = re.subn(r'<sampler\s+type="\w+"', f'<sampler type="{sampler}"', included(file))
         if count == 0:
             raise SystemExit(f"{file}: no sampler to replace")
         start = time.perf_counter()

@@ -19,8 +19,8 @@ pub trait Environment: Sync {
         None
     }
 
-    /// The picture of a sky, if it is that and nothing else: a scene with such an environment may be traced many paths at once. `None`
-    /// unless implemented.
+    /// The picture of a sky, if it is that and nothing else, and draws what that draws: a scene with such an environment may be traced many
+    /// paths at once. `None` unless implemented.
     fn as_sky(&self) -> Option<&Sky> {
         None
     }

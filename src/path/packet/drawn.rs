@@ -4,24 +4,13 @@ use glam::Vec3A;
 use pulp::Simd;
 
 use super::Single;
+use super::here::Here;
+use super::lamp::Lamp;
 use crate::path::Surface;
 use crate::path::bsdf::Scattered;
 use crate::path::geometry::Hit;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
 use crate::path::light::{Emission, Sky};
-
-/// Light that may arrive.
-pub(super) struct Lamp<S: Simd> {
-    /// Where the way to it starts, where it goes and how far.
-    pub(super) start: Vector<S>,
-    pub(super) into: Vector<S>,
-    pub(super) limit: Real<S>,
-    /// The radiance over the density.
-    pub(super) weight: Vector<S>,
-    pub(super) density: Real<S>,
-    /// Where there is any.
-    pub(super) active: Mask<S>,
-}
 
 /// Directions with weights and densities.
 pub(super) struct Weights {
@@ -100,6 +89,22 @@ impl SkyLight {
         };
         sky.draw(coordinates, lanes.len(), take);
         light
+    }
+
+    /// The way to the light.
+    #[inline(always)]
+    pub(super) fn lamp<S: Simd>(&self, simd: S, here: &Here<S>, active: Mask<S>) -> Lamp<S> {
+        let density = self.density(simd);
+        let active = active & density.gt(Real::splat(simd, 0.0));
+        let into = self.direction(simd);
+        Lamp {
+            start: here.place.leave(here.point, into),
+            into,
+            limit: Real::splat(simd, f32::INFINITY),
+            weight: self.weight(simd),
+            density: active.select(density, Real::splat(simd, 1.0)),
+            active,
+        }
     }
 }
 

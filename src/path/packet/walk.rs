@@ -5,19 +5,18 @@ use core::f32::consts::FRAC_1_PI;
 use glam::{Vec3, Vec3A};
 use pulp::{Simd, WithSimd};
 
-use super::drawn::{Hits, Lamp, Scatters, SkyLight};
+use super::drawn::{Hits, Scatters, SkyLight};
+use super::lamp::Lamp;
 use super::math::{around, cosine_hemisphere, power};
-use super::near::Drawn;
 use super::optics::{DELTA, OTHER};
-use super::place::DARK;
 use super::solids::{Rays, Solids, passes};
 use super::sweep::Shapes;
 use super::{Packet, Single, Start};
 use crate::Sampler;
+use crate::path::Paths;
 use crate::path::frame::single;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
 use crate::path::light::Sky;
-use crate::path::{Paths, gamma};
 
 /// The paths of some points.
 pub(super) struct Walk<'a, U> {
@@ -114,31 +113,24 @@ impl<U: Sampler> WithSimd for Walk<'_, U> {
     }
 }
 
-/// Where the paths are.
-struct Here<S: Simd> {
+/// What is known of the laws where the paths are.
+struct Laws<'a, S: Simd> {
     /// The normal that light is scattered by.
     shading: Vector<S>,
     /// The cosine between it and the way that the path came.
     facing: Real<S>,
     /// Of the ideally diffuse law.
     albedo: Vector<S>,
-    /// Where the law is another.
+    /// Where the law is another, which is asked by the points.
     other: Mask<S>,
+    hits: Option<&'a Hits<'a>>,
 }
 
 impl<U: Sampler> Walk<'_, U> {
     /// Takes every path one segment on, as an iteration of [`Paths::radiance`] does.
     #[inline(always)]
     fn step<S: Simd>(&mut self, simd: S, state: &mut State) {
-        let Packet {
-            table,
-            shapes,
-            dividing,
-            solids,
-            others,
-            ..
-        } = self.packet;
-        let others = *others;
+        let packet = self.packet;
         let (zero, one) = (Real::splat(simd, 0.0), Real::splat(simd, 1.0));
         let origin = Vector::load(simd, &state.origin);
         let direction = Vector::load(simd, &state.direction);
@@ -147,23 +139,8 @@ impl<U: Sampler> Walk<'_, U> {
         let density = Real::load(simd, &state.density);
         let segment = Real::load(simd, &state.segment);
 
-        let hit = shapes.nearest(simd, origin, direction);
         let walking = segment.gt(zero);
-        let mut met = walking & hit.distance.lt(Real::splat(simd, f32::INFINITY));
-        let mut shape = Row::<u32>::ZERO;
-        hit.shape.store(&mut shape);
-        let solids = solids.as_ref().map(|solids| {
-            let rays = Rays {
-                origin: &state.origin,
-                direction: &state.direction,
-                limit: &hit.distance.row(),
-                active: &walking.row(simd),
-            };
-            solids.nearest(&rays, &shape)
-        });
-        if let Some(solids) = &solids {
-            met = met | solids.met(simd);
-        }
+        let (here, met) = packet.meet(simd, &state.origin, &state.direction, walking);
         let missed = walking & !met;
         if let Some(sky) = self.sky {
             if missed.any() {
@@ -172,217 +149,82 @@ impl<U: Sampler> Walk<'_, U> {
                 let sum = radiance + throughput * light.weight(simd) * power(density, other);
                 radiance = missed.choose(sum, radiance);
             }
-        } else if self.packet.around != Vec3A::ZERO {
-            let sum = radiance + throughput * Vector::splat(simd, self.packet.around);
+        } else if packet.around != Vec3A::ZERO {
+            let sum = radiance + throughput * Vector::splat(simd, packet.around);
             radiance = missed.choose(sum, radiance);
-        }
-        let mut here = table.places(simd, &shape);
-        let mut point = {
-            let [low_s, low_t] = table.inset(simd, &shape);
-            let s = hit.s.max(low_s).min(one - low_s);
-            let t = hit.t.max(low_t).min(one - low_t);
-            if self.packet.triangles {
-                let beyond = (table.slant(simd, &shape) * (s + t) + low_s.max(low_t)).max(one);
-                here.at(s / beyond, t / beyond)
-            } else {
-                here.at(s, t)
-            }
-        };
-        let mut shading = here.normal;
-        if let Some(solids) = &solids {
-            let met = solids.met(simd);
-            point = met.choose(solids.point(simd), point);
-            here.normal = met.choose(solids.normal(simd), here.normal);
-            here.margin = met.select(solids.margin(simd), here.margin);
-            here.chance = met.select(Real::splat(simd, DARK), here.chance);
-            shading = met.choose(solids.shading(simd), here.normal);
         }
 
         // Emitted light, met by a direction that was drawn at the surface before.
-        let lit = met & here.chance.ge(zero) & here.normal.dot(origin - point).gt(zero);
+        let lit = met & here.shines(origin);
         if lit.any() {
-            let area = table.area(simd, &shape);
-            let mut drawn = here.density_of_area(origin, point, area);
-            if let Some(near) = &self.packet.near {
-                drawn = near.density(&shape, lit, origin, drawn);
-            }
-            let other = here.chance * drawn;
-            let emission = throughput * table.radiance(simd, &shape);
-            radiance = lit.choose(radiance + emission * power(density, other), radiance);
+            let (emitted, other) = packet.emitted(simd, &here, origin, lit);
+            let sum = radiance + throughput * emitted * power(density, other);
+            radiance = lit.choose(sum, radiance);
         }
-        let facing = shading.dot(-direction);
+        let facing = here.shading.dot(-direction);
         let mut walking = met & segment.lt(Real::splat(simd, self.paths.longest as f32));
-        if self.packet.one_sided {
-            let mut inner = table.inner(simd, &shape);
-            if let Some(solids) = &solids {
-                inner = (solids.met(simd)).select(solids.inner(simd), inner);
-            }
-            walking = walking & (inner.gt(zero) | facing.gt(zero));
+        if packet.one_sided {
+            walking = walking & (here.inner(simd, &packet.table).gt(zero) | facing.gt(zero));
         }
         if !walking.any() {
             radiance.store(&mut state.radiance);
             zero.store(&mut state.segment);
             return;
         }
-        let mut albedo = table.albedo(simd, &shape);
-        let mut kind = if others {
-            table.kind(simd, &shape)
+        let hits = (packet.others).then(|| here.hits(&packet.table, &state.direction));
+        let kind = if packet.others {
+            here.kind(simd, &packet.table)
         } else {
             zero
         };
-        if let Some(solids) = &solids {
-            albedo = (solids.met(simd)).choose(solids.albedo(simd), albedo);
-            kind = (solids.met(simd)).select(solids.kind(simd), kind);
-        }
-        let at = Here {
-            shading,
+        let at = Laws {
+            shading: here.shading,
             facing,
-            albedo,
+            albedo: here.albedo(simd, &packet.table),
             other: kind.ge(Real::splat(simd, OTHER)),
+            hits: hits.as_ref(),
         };
-        let hits = others.then(|| {
-            let mut part = table.parts(&shape);
-            let mut triangle = Row::<u32>::ZERO;
-            if let Some(solids) = &solids {
-                solids.name(&mut part, &mut triangle);
-            }
-            Hits {
-                point: point.rows(),
-                normal: here.normal.rows(),
-                margin: here.margin.row(),
-                part,
-                triangle,
-                direction: &state.direction,
-            }
-        });
 
-        let mut chosen = match self.packet.emitters[..] {
-            [one] => Row::<u32>::splat(one),
-            _ => Row::<u32>::ZERO,
-        };
+        let mut chosen = packet.first_light();
         let mut sky = SkyLight::NONE;
         let mut scattered = Scatters::NONE;
-        let [a, b, c, d] = if others || self.sky.is_some() {
-            let kind = kind.row();
-            self.draw(
-                simd,
-                state,
-                (walking, &kind),
-                hits.as_ref(),
-                (&mut chosen, &mut sky, &mut scattered),
-            )
+        let [a, b, c, d] = if packet.others || self.sky.is_some() {
+            let drawn = (&mut chosen, &mut sky, &mut scattered);
+            self.draw(simd, state, (walking, &kind.row()), at.hits, drawn)
         } else {
             self.draw_diffuse(simd, state, walking, &mut chosen)
         };
+
+        // Next-event estimation: light met by drawing a point of the lights, and one of the sky.
         let mut seeing = walking;
-        if others {
+        if packet.others {
             seeing = seeing & kind.lt(Real::splat(simd, DELTA));
         }
-
-        // Next-event estimation: light met by drawing a point of the lights.
-        if let [first, rest @ ..] = &self.packet.emitters[..] {
-            let (there, area, light) = if rest.is_empty() {
-                let shape = *first as usize;
-                (
-                    table.place(simd, *first),
-                    Real::splat(simd, table.area[shape]),
-                    table.light(simd, shape),
-                )
-            } else {
-                (
-                    table.places(simd, &chosen),
-                    table.area(simd, &chosen),
-                    table.radiance(simd, &chosen),
-                )
-            };
-            let (s, t) = if self.packet.slanted_lights {
-                let slanted = table.slant(simd, &chosen).gt(zero);
-                let above = b.gt(a);
-                let (half_a, half_b) = (0.5 * a, 0.5 * b);
-                let s = above.select(half_a, a - half_b);
-                let t = above.select(b - half_a, half_b);
-                (slanted.select(s, a), slanted.select(t, b))
-            } else {
-                (a, b)
-            };
-            let target = there.at(s, t);
-            let mut drawn = Drawn {
-                point: target,
-                density: there.density_of_area(point, target, area),
-            };
-            if let Some(near) = &self.packet.near {
-                drawn = near.sample(&chosen, seeing, point, [a, b], drawn);
-            }
-            let target = drawn.point;
-            let own = there.chance * drawn.density;
-            let toward = target - point;
-            let start = here.leave(point, toward);
-            let way = there.leave(target, -toward) - start;
-            let length = way.length();
-            let active = seeing
-                & there.normal.dot(point - target).gt(zero)
-                & own.gt(zero)
-                & own.lt(Real::splat(simd, f32::MAX))
-                & length.gt(zero);
-            // Other lanes may have the largest of numbers, whose inverse is a slow one.
-            let own = active.select(own, one);
-            let lamp = Lamp {
-                start,
-                into: way * (1.0 / length),
-                limit: length * (1.0 - gamma(8)),
-                weight: light * (1.0 / own),
-                density: own,
-                active,
-            };
-            radiance = self.lit(
-                simd,
-                hits.as_ref(),
-                &at,
-                &lamp,
-                dividing,
-                (throughput, radiance),
-            );
+        if !packet.emitters.is_empty() {
+            let lamp = packet.lamp(simd, &here, &chosen, [a, b], seeing);
+            radiance = self.lit(simd, &at, &lamp, &packet.dividing, (throughput, radiance));
         }
-        // Light from the sky.
         if self.sky.is_some() {
-            let own = sky.density(simd);
-            let active = seeing & own.gt(zero);
-            let into = sky.direction(simd);
-            let lamp = Lamp {
-                start: here.leave(point, into),
-                into,
-                limit: Real::splat(simd, f32::INFINITY),
-                weight: sky.weight(simd),
-                density: active.select(own, one),
-                active,
-            };
-            radiance = self.lit(
-                simd,
-                hits.as_ref(),
-                &at,
-                &lamp,
-                shapes,
-                (throughput, radiance),
-            );
+            let lamp = sky.lamp(simd, &here, seeing);
+            radiance = self.lit(simd, &at, &lamp, &packet.shapes, (throughput, radiance));
         }
 
         // All other light, by drawing a direction.
         let local = cosine_hemisphere(c, d);
-        let mut eta = Real::load(simd, &state.eta);
-        let (goes_on, mut weight) = (local.z.gt(zero), albedo);
+        let mut goes_on = local.z.gt(zero);
+        let mut weight = at.albedo;
         let mut drawn = FRAC_1_PI * local.z;
-        let normal = shading * one.copysign(facing);
-        let mut next = around(normal, local);
-        if others {
+        let mut next = around(at.shading * one.copysign(facing), local);
+        let mut eta = Real::load(simd, &state.eta);
+        if packet.others {
             let other = at.other;
-            walking = walking & ((other & scattered.goes_on(simd)) | (!other & goes_on));
+            goes_on = (other & scattered.goes_on(simd)) | (!other & goes_on);
             weight = other.choose(scattered.weight(simd), weight);
             drawn = other.select(scattered.density(simd), drawn);
             next = other.choose(scattered.direction(simd), next);
             eta = eta * other.select(scattered.eta(simd), one);
-        } else {
-            walking = walking & goes_on;
         }
+        walking = walking & goes_on;
         throughput *= weight;
         let playing = walking & segment.ge(Real::splat(simd, self.paths.roulette.from as f32));
         if playing.any() {
@@ -391,7 +233,7 @@ impl<U: Sampler> Walk<'_, U> {
             walking = walking & (!playing | weight.gt(zero));
             throughput = playing.choose(throughput * weight, throughput);
         }
-        here.leave(point, next).store(&mut state.origin);
+        here.place.leave(here.point, next).store(&mut state.origin);
         next.store(&mut state.direction);
         throughput.store(&mut state.throughput);
         radiance.store(&mut state.radiance);
@@ -407,8 +249,7 @@ impl<U: Sampler> Walk<'_, U> {
     fn lit<S: Simd>(
         &self,
         simd: S,
-        hits: Option<&Hits<'_>>,
-        at: &Here<S>,
+        at: &Laws<'_, S>,
         lamp: &Lamp<S>,
         between: &Shapes,
         (throughput, radiance): (Vector<S>, Vector<S>),
@@ -419,7 +260,7 @@ impl<U: Sampler> Walk<'_, U> {
         let mut other = FRAC_1_PI * size;
         let mut value = at.albedo * (FRAC_1_PI * size);
         let mut seen = (cosine * at.facing).gt(zero);
-        if let Some(hits) = hits {
+        if let Some(hits) = at.hits {
             let asked = lamp.active & at.other;
             if asked.any() {
                 let into = lamp.into.rows();

@@ -1,0 +1,279 @@
+//! Packets against single paths.
+
+use glam::{Affine2, DMat3, Vec2, Vec3};
+
+use crate::hash::{hash, unit_f32};
+use crate::path::bsdf::{
+    Bsdf, Conductor, Dielectric, Diffuse, Distribution, Lambertian, Mask, Material, Mirror, Null,
+    Plastic, RoughConductor, Roughness, Tint,
+};
+use crate::path::light::{
+    AreaLights, Background, Constant, Environment, Light, NoEnvironment, NoLight, Sky, Surroundings,
+};
+use crate::path::sensor::Pinhole;
+use crate::path::shape::{Flat, Mesh, Primitive, Sphere, cuboid};
+use crate::path::texture::{Checkerboard, Parameter, Texture, Uniform};
+use crate::path::{Object, Paths, Pixel, Scene, View, filter::BoxFilter, scenes};
+use crate::points::{HashedOwen, PointSet, Sobol};
+use crate::{Error, Integrand};
+
+/// Every value of `evaluate_many` must be that of `evaluate`, to the bit.
+fn agree<B: Bsdf, L: Light, E: Environment>(view: &View<B, L, E, Pinhole>) {
+    assert!(view.scene.packet().is_some(), "the scene has packets");
+    let size = [7, 5];
+    for position in [[0, 0], [3, 4], [6, 2], [2, 1]] {
+        let pixel = Pixel {
+            scene: &view.scene,
+            sensor: &view.sensor,
+            filter: &view.filter,
+            paths: view.paths,
+            position,
+            size,
+        };
+        let seed = hash(u64::from(position[0]), u64::from(position[1]));
+        let points = Sobol::new(12).unwrap().scrambled(HashedOwen { seed });
+        for count in [1, 15, 300] {
+            let mut samplers: Vec<_> = (0..count).map(|index| points.point(index)).collect();
+            let mut values = vec![Vec3::NAN; samplers.len()];
+            pixel.evaluate_many(&mut samplers, &mut values);
+            for (index, value) in (0..count).zip(values) {
+                let expected = pixel.evaluate(&mut points.point(index));
+                assert_eq!(value, expected, "{position:?}, point {index} of {count}");
+            }
+        }
+    }
+}
+
+#[test]
+fn packets_give_the_bits_of_single_paths_in_the_cornell_box() {
+    let mut view = scenes::cornell_box();
+    agree(&view);
+    for longest in [1, 2, 8] {
+        view.paths = Paths::default().longest(longest).unwrap();
+        agree(&view);
+    }
+    view.paths = Paths::default().roulette_from(1);
+    agree(&view);
+    view.paths = view.learn_roulette([16, 16], 4, 1).unwrap();
+    assert!(view.paths != Paths::default());
+    agree(&view);
+}
+
+/// A room of triangles, turned, below a sky, with lights of both kinds.
+fn room<L: Light, E: Environment>(
+    lit: bool,
+    environment: E,
+) -> Result<View<Lambertian, L, E, Pinhole>, Error> {
+    let mut state = 0;
+    let mut random = || {
+        state += 1;
+        unit_f32(hash(11, state))
+    };
+    let mut objects = vec![Object::new(
+        cuboid(
+            [0.0; 3],
+            [[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.0]],
+        )?
+        .into_iter()
+        .skip(1)
+        .map(Flat::turned),
+        Lambertian::new([0.7, 0.5, 0.9])?,
+    )];
+    for k in 0..12 {
+        let corners = [0; 3].map(|_| [0; 3].map(|_| 1.2 * random() - 0.6));
+        let object = Object::new(
+            [Flat::triangle(corners)?],
+            Lambertian::new([0.5; 3])?.outside(),
+        );
+        let light = lit && k < 4;
+        objects.push(if light {
+            object.emitting([1.0, k as f32, 2.0])?
+        } else {
+            object
+        });
+    }
+    if lit {
+        let lamp = Flat::parallelogram([-0.1, 0.7, 0.0], [0.2, 0.0, 0.0], [0.0, 0.0, 0.2])?;
+        objects.push(Object::new([lamp], Lambertian::new([0.0; 3])?).emitting([9.0; 3])?);
+    }
+    Ok(View {
+        scene: Scene::new(objects, environment)?,
+        sensor: Pinhole::look_at([0.1, -0.1, -0.9], [0.0; 3], [0.0, 1.0, 0.0], 70.0, 1.4)?,
+        filter: BoxFilter,
+        paths: Paths::default(),
+    })
+}
+
+#[test]
+fn packets_give_the_bits_of_single_paths_among_triangles_and_many_lights() {
+    agree::<_, AreaLights, _>(&room(true, NoEnvironment).unwrap());
+    let sky = Constant::new([0.2, 0.3, 0.4]).unwrap();
+    agree::<_, AreaLights, _>(&room(true, sky).unwrap());
+    agree::<_, NoLight, _>(&room(false, sky).unwrap());
+}
+
+/// A box with a lamp, and in it meshes with and without normals, one of them black inside and turned.
+fn meshes<B: Bsdf + From<Lambertian>, E: Environment>(
+    smooth: bool,
+    height: f32,
+    environment: E,
+) -> Result<View<B, AreaLights, E, Pinhole>, Error> {
+    let edges = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let law = |albedo, one_sided| -> Result<B, Error> {
+        let law = Lambertian::new(albedo)?;
+        Ok(B::from(if one_sided { law.outside() } else { law }))
+    };
+    let walls = cuboid([0.0; 3], edges)?.into_iter().map(Flat::turned);
+    let lamp = Flat::parallelogram([-0.4, height, -0.4], [0.8, 0.0, 0.0], [0.0, 0.0, 0.8])?;
+    let mut objects = vec![
+        Object::new(walls, law([0.7, 0.5, 0.9], false)?),
+        Object::new([lamp], law([0.3; 3], true)?).emitting([5.0, 4.0, 3.0])?,
+    ];
+    let mut state = 0;
+    let mut random = || {
+        state += 1;
+        unit_f32(hash(12, state))
+    };
+    for (k, one_sided) in [false, true, true].into_iter().enumerate() {
+        // More triangles than are taken apart.
+        let mut vector = |size: f32, shift: f32| [0; 3].map(|_| size * random() - shift);
+        let positions: Vec<_> = (0..24).map(|_| vector(1.4, 0.7)).collect();
+        let normals = (0..24).map(|_| vector(2.0, 1.0)).collect();
+        let corners = (0..22).map(|first| [first, first + 1, first + 2]).collect();
+        let mut mesh = Mesh::new(positions, corners)?;
+        if smooth {
+            mesh = mesh.with_normals(normals)?;
+        }
+        let mesh = if k == 2 { mesh.turned() } else { mesh };
+        objects.push(Object::mesh(mesh, law([0.2, 0.6, 0.8], one_sided)?));
+    }
+    Ok(View {
+        scene: Scene::new(objects, environment)?,
+        sensor: Pinhole::look_at([0.1, -0.1, -0.9], [0.0; 3], [0.0, 1.0, 0.0], 70.0, 1.4)?,
+        filter: BoxFilter,
+        paths: Paths::default(),
+    })
+}
+
+#[test]
+fn packets_give_the_bits_of_single_paths_among_meshes() {
+    let sky = Constant::new([0.2, 0.3, 0.4]).unwrap();
+    for height in [0.9, -0.6] {
+        agree(&meshes::<Lambertian, _>(false, height, NoEnvironment).unwrap());
+        agree(&meshes::<Material<Texture>, _>(true, height, NoEnvironment).unwrap());
+        agree(&meshes::<Material<Texture>, _>(true, height, sky).unwrap());
+    }
+}
+
+#[test]
+fn packets_give_the_bits_of_single_paths_near_a_lamp() {
+    let mut view = scenes::cornell_box();
+    let room = |size: f32| -> Result<Vec<Object<Lambertian>>, Error> {
+        let white = Lambertian::new([0.6; 3])?;
+        let floor = Flat::parallelogram([-4.0, 0.0, 4.0], [8.0, 0.0, 0.0], [0.0, 0.0, -8.0])?;
+        let half = 0.5 * size;
+        let corner = [-half, 0.8, -half];
+        let tile = [[size, 0.0, 0.0], [0.0, 0.0, size]];
+        let corners = [corner, [half, 0.8, -half], [-half, 0.8, half]];
+        Ok(vec![
+            Object::new([floor], white),
+            Object::new([Flat::parallelogram(corner, tile[0], tile[1])?], white)
+                .emitting([2.0; 3])?,
+            Object::new([Flat::triangle(corners)?], white).emitting([1.0; 3])?,
+        ])
+    };
+    for (size, near) in [(2.0, true), (0.1, false)] {
+        view.scene = Scene::new(room(size).unwrap(), NoEnvironment).unwrap();
+        let lights = view.scene.lights().shapes();
+        let drawn = |shape: &Primitive| match shape {
+            Primitive::Flat(flat) => flat.is_by_solid_angle(),
+            _ => false,
+        };
+        assert_eq!(lights.map(drawn).collect::<Vec<_>>(), [near; 2], "{size}");
+        agree(&view);
+    }
+}
+
+/// A ground, a lamp that may shine, spheres and a mesh of several laws, one of which has the given reflectance.
+fn balls<P: Parameter + From<Uniform>, L: Light, E: Environment>(
+    lit: bool,
+    tiles: P,
+    environment: E,
+) -> Result<View<Material<P>, L, E, Pinhole>, Error> {
+    let color = |albedo: f32| P::from(Uniform::from(albedo));
+    let rough = Roughness::new(Distribution::Ggx, color(0.3))?;
+    let white: Material<P> = Lambertian::new([0.8, 0.7, 0.6])?.into();
+    let laws: Vec<Material<P>> = vec![
+        white.clone(),
+        Lambertian::new([0.2, 0.9, 0.5])?.outside().into(),
+        Mirror::new([0.9; 3])?.into(),
+        Dielectric::new(1.5, 1.0)?.tinted(Tint::default()).into(),
+        Plastic::new(color(0.4), 1.49, 1.0)?.into(),
+        RoughConductor::new(Conductor::new(color(2.0), color(1.5))?, rough).into(),
+        Mask::new(color(0.5), white.clone()).into(),
+        Diffuse::new(tiles.clone())?.into(),
+        Null.into(),
+    ];
+    let ground = Flat::parallelogram([-4.0, 0.0, 4.0], [8.0, 0.0, 0.0], [0.0, 0.0, -8.0])?;
+    let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])?;
+    let lamp = Object::new([lamp], white.clone());
+    let mut objects = vec![
+        Object::new([ground], white),
+        if lit { lamp.emitting([6.0; 3])? } else { lamp },
+    ];
+    let mut random = (0..).map(|state| unit_f32(hash(13, state)));
+    for law in &laws {
+        let [x, z] = [0; 2].map(|_| 2.4 * random.next().unwrap() - 1.2);
+        let ball = Sphere::new([x, 0.5, z], 0.4)?;
+        let ball = if x > 0.9 { ball.turned() } else { ball };
+        objects.push(Object::new([ball], law.clone()));
+    }
+    let mut vectors = |shift: f32| -> Vec<[f32; 3]> {
+        let mut vector = || [0; 3].map(|_| 1.4 * random.next().unwrap() - shift);
+        (0..60).map(|_| vector()).collect()
+    };
+    for law in [&laws[4], &laws[7]] {
+        let corners = (0..58).map(|first| [first, first + 1, first + 2]).collect();
+        let mesh = Mesh::new(vectors(0.5), corners)?.with_normals(vectors(0.7))?;
+        objects.push(Object::mesh(mesh, law.clone()));
+    }
+    Ok(View {
+        scene: Scene::new(objects, environment)?,
+        sensor: Pinhole::look_at([0.1, 1.5, 3.0], [0.0; 3], [0.0, 1.0, 0.0], 60.0, 1.4)?,
+        filter: BoxFilter,
+        paths: Paths::default(),
+    })
+}
+
+#[test]
+fn packets_give_the_bits_of_single_paths_among_spheres_of_any_law() {
+    let sky = || {
+        let pixel = |i: u64| [0, 1, 2].map(|k| unit_f32(hash(14, 3 * i + k)).powi(8));
+        let pixels: Vec<_> = (0..512).map(pixel).collect();
+        Sky::new(32, &pixels, DMat3::from_rotation_x(0.4)).unwrap()
+    };
+    let constant = Constant::new([0.2, 0.3, 0.4]).unwrap();
+    let tiles = || {
+        let colors = [0.9, 0.1].map(|color| Uniform::from(color).into());
+        Texture::from(Checkerboard::new(
+            colors,
+            Affine2::from_scale(Vec2::splat(8.0)),
+        ))
+    };
+    let grey = Uniform::from(0.4);
+    agree(&balls::<_, AreaLights, _>(true, grey, NoEnvironment).unwrap());
+    agree(&balls::<_, AreaLights, _>(true, grey, constant).unwrap());
+    agree(&balls::<_, AreaLights, _>(true, grey, sky()).unwrap());
+    agree(&balls::<_, NoLight, _>(false, grey, sky()).unwrap());
+    let around = |background| Surroundings::new(Vec::new(), background).unwrap();
+    let surroundings = around(Background::Sky(Box::new(sky())));
+    agree(&balls::<_, NoLight, _>(false, grey, surroundings).unwrap());
+    agree(&balls::<_, AreaLights, _>(true, tiles(), sky()).unwrap());
+    agree(&balls::<_, NoLight, _>(false, tiles(), constant).unwrap());
+}
+
+#[test]
+fn other_scenes_have_no_packets() {
+    let dark = room::<AreaLights, _>(false, NoEnvironment).unwrap();
+    assert!(dark.scene.packet().is_none());
+}

@@ -93,7 +93,7 @@ impl SkyLight {
 
     /// The way to the light.
     #[inline(always)]
-    pub(super) fn lamp<S: Simd>(&self, simd: S, here: &Here<S>, active: Mask<S>) -> Lamp<S> {
+    pub(super) fn lamp<S: Simd>(&self, simd: S, here: &Here<'_, S>, active: Mask<S>) -> Lamp<S> {
         let density = self.density(simd);
         let active = active & density.gt(Real::splat(simd, 0.0));
         let into = self.direction(simd);

@@ -5,34 +5,30 @@ use pulp::Simd;
 use super::Packet;
 use super::drawn::Hits;
 use super::place::{DARK, Place, Table};
-use super::solids::{Points, Rays};
+use super::solids::Points;
+use super::sweep::Hit;
 use crate::path::lanes::{Mask, Real, Row, Vector};
 
 /// The points that rays meet.
-pub(super) struct Here<S: Simd> {
+pub(super) struct Here<'a, S: Simd> {
     pub(super) place: Place<S>,
     pub(super) point: Vector<S>,
     /// The normal that light is scattered by.
     pub(super) shading: Vector<S>,
     pub(super) shape: Row<u32>,
-    solids: Option<Points>,
+    solids: Option<&'a Points>,
 }
 
 impl Packet {
-    /// The points that rays meet first, and in which of the `active` lanes they meet any.
+    /// The points that rays meet first, where they meet a shape or a solid.
     #[inline(always)]
-    pub(super) fn meet<S: Simd>(
+    pub(super) fn here<'a, S: Simd>(
         &self,
         simd: S,
-        origin: &[Row<f32>; 3],
-        direction: &[Row<f32>; 3],
-        active: Mask<S>,
-    ) -> (Here<S>, Mask<S>) {
-        let rays = [origin, direction].map(|rows| Vector::load(simd, rows));
-        let hit = self.shapes.nearest(simd, rays[0], rays[1]);
-        let mut met = active & hit.distance.lt(Real::splat(simd, f32::INFINITY));
-        let mut shape = Row::<u32>::ZERO;
-        hit.shape.store(&mut shape);
+        hit: &Hit<S>,
+        solids: Option<&'a Points>,
+    ) -> Here<'a, S> {
+        let shape = hit.shapes();
         let place = self.table.places(simd, &shape);
         let point = {
             let one = Real::splat(simd, 1.0);
@@ -52,36 +48,22 @@ impl Packet {
             point,
             shading: place.normal,
             shape,
-            solids: None,
+            solids,
         };
-        if let Some(solids) = &self.solids {
-            let rays = Rays {
-                origin,
-                direction,
-                limit: &hit.distance.row(),
-                active: &active.row(simd),
-            };
-            let points = solids.nearest(&rays, &shape);
-            met = met | points.met(simd);
-            here.set_solids(simd, points);
+        if let Some(points) = solids {
+            let met = points.met(simd);
+            let place = &mut here.place;
+            here.point = met.choose(points.point(simd), here.point);
+            place.normal = met.choose(points.normal(simd), place.normal);
+            place.margin = met.select(points.margin(simd), place.margin);
+            place.chance = met.select(Real::splat(simd, DARK), place.chance);
+            here.shading = met.choose(points.shading(simd), place.normal);
         }
-        (here, met)
+        here
     }
 }
 
-impl<S: Simd> Here<S> {
-    #[inline(always)]
-    fn set_solids(&mut self, simd: S, points: Points) {
-        let met = points.met(simd);
-        let place = &mut self.place;
-        self.point = met.choose(points.point(simd), self.point);
-        place.normal = met.choose(points.normal(simd), place.normal);
-        place.margin = met.select(points.margin(simd), place.margin);
-        place.chance = met.select(Real::splat(simd, DARK), place.chance);
-        self.shading = met.choose(points.shading(simd), place.normal);
-        self.solids = Some(points);
-    }
-
+impl<S: Simd> Here<'_, S> {
     /// Where light is emitted towards `origin`.
     #[inline(always)]
     pub(super) fn shines(&self, origin: Vector<S>) -> Mask<S> {
@@ -94,7 +76,7 @@ impl<S: Simd> Here<S> {
     #[inline(always)]
     pub(super) fn inner(&self, simd: S, table: &Table) -> Real<S> {
         let inner = table.inner(simd, &self.shape);
-        match &self.solids {
+        match self.solids {
             Some(solids) => (solids.met(simd)).select(solids.inner(simd), inner),
             None => inner,
         }
@@ -104,7 +86,7 @@ impl<S: Simd> Here<S> {
     #[inline(always)]
     pub(super) fn kind(&self, simd: S, table: &Table) -> Real<S> {
         let kind = table.kind(simd, &self.shape);
-        match &self.solids {
+        match self.solids {
             Some(solids) => (solids.met(simd)).select(solids.kind(simd), kind),
             None => kind,
         }
@@ -114,7 +96,7 @@ impl<S: Simd> Here<S> {
     #[inline(always)]
     pub(super) fn albedo(&self, simd: S, table: &Table) -> Vector<S> {
         let albedo = table.albedo(simd, &self.shape);
-        match &self.solids {
+        match self.solids {
             Some(solids) => (solids.met(simd)).choose(solids.albedo(simd), albedo),
             None => albedo,
         }
@@ -125,7 +107,7 @@ impl<S: Simd> Here<S> {
     pub(super) fn hits<'a>(&self, table: &Table, direction: &'a [Row<f32>; 3]) -> Hits<'a> {
         let mut part = table.parts(&self.shape);
         let mut triangle = Row::<u32>::ZERO;
-        if let Some(solids) = &self.solids {
+        if let Some(solids) = self.solids {
             solids.name(&mut part, &mut triangle);
         }
         Hits {

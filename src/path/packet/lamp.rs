@@ -43,7 +43,7 @@ impl Packet {
     pub(super) fn emitted<S: Simd>(
         &self,
         simd: S,
-        here: &Here<S>,
+        here: &Here<'_, S>,
         origin: Vector<S>,
         active: Mask<S>,
     ) -> (Vector<S>, Real<S>) {
@@ -66,7 +66,7 @@ impl Packet {
     pub(super) fn lamp<S: Simd>(
         &self,
         simd: S,
-        here: &Here<S>,
+        here: &Here<'_, S>,
         chosen: &Row<u32>,
         [a, b]: [Real<S>; 2],
         active: Mask<S>,

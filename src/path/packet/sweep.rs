@@ -4,7 +4,7 @@ use glam::Vec3A;
 use pulp::Simd;
 
 use crate::path::geometry::{Kind, axis};
-use crate::path::lanes::{Index, Mask, Real, Vector};
+use crate::path::lanes::{Index, Mask, Real, Row, Vector};
 use crate::path::shape::{Flat, Sphere};
 
 /// The shapes, by how simple their equations are.
@@ -84,6 +84,14 @@ pub(super) struct Hit<S: Simd> {
 }
 
 impl<S: Simd> Hit<S> {
+    /// The numbers of the shapes, to be read lane by lane.
+    #[inline(always)]
+    pub(super) fn shapes(&self) -> Row<u32> {
+        let mut shapes = Row::<u32>::ZERO;
+        self.shape.store(&mut shapes);
+        shapes
+    }
+
     #[inline(always)]
     fn nearer(self, shape: u32, met: Meeting<S>) -> Self {
         let nearer = met.inside & met.distance.lt(self.distance);

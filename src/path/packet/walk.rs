@@ -140,7 +140,20 @@ impl<U: Sampler> Walk<'_, U> {
         let segment = Real::load(simd, &state.segment);
 
         let walking = segment.gt(zero);
-        let (here, met) = packet.meet(simd, &state.origin, &state.direction, walking);
+        let hit = packet.shapes.nearest(simd, origin, direction);
+        let mut met = walking & hit.distance.lt(Real::splat(simd, f32::INFINITY));
+        let solids = packet.solids.as_ref().map(|solids| {
+            let rays = Rays {
+                origin: &state.origin,
+                direction: &state.direction,
+                limit: &hit.distance.row(),
+                active: &walking.row(simd),
+            };
+            solids.nearest(&rays, &hit.shapes())
+        });
+        if let Some(solids) = &solids {
+            met = met | solids.met(simd);
+        }
         let missed = walking & !met;
         if let Some(sky) = self.sky {
             if missed.any() {
@@ -154,6 +167,7 @@ impl<U: Sampler> Walk<'_, U> {
             radiance = missed.choose(sum, radiance);
         }
 
+        let here = packet.here(simd, &hit, solids.as_ref());
         // Emitted light, met by a direction that was drawn at the surface before.
         let lit = met & here.shines(origin);
         if lit.any() {
@@ -186,10 +200,10 @@ impl<U: Sampler> Walk<'_, U> {
         };
 
         let mut chosen = packet.first_light();
-        let mut sky = SkyLight::NONE;
-        let mut scattered = Scatters::NONE;
+        let (mut sky, mut scattered) = (None, None);
         let [a, b, c, d] = if packet.others || self.sky.is_some() {
-            let drawn = (&mut chosen, &mut sky, &mut scattered);
+            let scattered = scattered.insert(Scatters::NONE);
+            let drawn = (&mut chosen, &mut sky, scattered);
             self.draw(simd, state, (walking, &kind.row()), at.hits, drawn)
         } else {
             self.draw_diffuse(simd, state, walking, &mut chosen)
@@ -204,7 +218,7 @@ impl<U: Sampler> Walk<'_, U> {
             let lamp = packet.lamp(simd, &here, &chosen, [a, b], seeing);
             radiance = self.lit(simd, &at, &lamp, &packet.dividing, (throughput, radiance));
         }
-        if self.sky.is_some() {
+        if let Some(sky) = &sky {
             let lamp = sky.lamp(simd, &here, seeing);
             radiance = self.lit(simd, &at, &lamp, &packet.shapes, (throughput, radiance));
         }
@@ -216,7 +230,7 @@ impl<U: Sampler> Walk<'_, U> {
         let mut drawn = FRAC_1_PI * local.z;
         let mut next = around(at.shading * one.copysign(facing), local);
         let mut eta = Real::load(simd, &state.eta);
-        if packet.others {
+        if let Some(scattered) = &scattered {
             let other = at.other;
             goes_on = (other & scattered.goes_on(simd)) | (!other & goes_on);
             weight = other.choose(scattered.weight(simd), weight);
@@ -297,7 +311,7 @@ impl<U: Sampler> Walk<'_, U> {
         state: &State,
         (walking, kinds): (Mask<S>, &Row<f32>),
         hits: Option<&Hits<'_>>,
-        (chosen, light, scattered): (&mut Row<u32>, &mut SkyLight, &mut Scatters),
+        (chosen, light, scattered): (&mut Row<u32>, &mut Option<SkyLight>, &mut Scatters),
     ) -> [Real<S>; 4] {
         let lit = !self.packet.emitters.is_empty();
         let walks = walking.row(simd);
@@ -325,7 +339,7 @@ impl<U: Sampler> Walk<'_, U> {
             }
         }
         if let Some(sky) = self.sky {
-            *light = SkyLight::drawn(sky, &lanes[..count], &coordinates);
+            *light = Some(SkyLight::drawn(sky, &lanes[..count], &coordinates));
         }
         u.map(|row| Real::load(simd, &row))
     }

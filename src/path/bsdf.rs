@@ -81,7 +81,8 @@ pub trait Bsdf: Sync {
     /// [`evaluate`](Self::evaluate) is zero and no light is worth sampling.
     fn is_delta(&self) -> bool;
 
-    /// The law as [`Lambertian`], if it is that: where many paths are traced at once, other laws are asked one by one. `None` unless
+    /// The law as [`Lambertian`], if it is that: where many paths are traced at once, other laws are asked one by one. It scatters
+    /// by the interpolated normal if and only if its [`Detail`](Self::Detail) is [`Shading`](super::Shading). `None` unless
     /// implemented.
     fn as_lambertian(&self) -> Option<&Lambertian> {
         None

@@ -71,12 +71,14 @@ pub(in crate::path) trait Single<U> {
 
 impl Packet {
     /// The scene of the given shapes and lights, if it is one of those, with the same radiance from all around. `optics` tells what a
-    /// shape does to light, or a mesh, which have the numbers after the shapes, if that is among what packets know.
+    /// shape does to light, or a mesh, which have the numbers after the shapes, if that is among what packets know; `smooth`, whether
+    /// laws heed interpolated normals.
     pub(in crate::path) fn new(
         geometry: &Geometry,
         optics: impl Fn(usize) -> Option<Optics>,
         lights: &AreaLights,
         around: Vec3A,
+        smooth: bool,
     ) -> Option<Self> {
         let Few {
             shapes: primitives,
@@ -132,12 +134,14 @@ impl Packet {
             packet.shapes.push_ball(number, sphere);
             packet.dividing.push_ball(number, sphere);
         }
+        // The numbers of triangles are kept in lanes.
+        u32::try_from(soup.map_or(0, |soup| soup.triangles())).ok()?;
         let mut meshes = Vec::new();
         for mesh in 0..soup.map_or(0, |soup| soup.meshes().len()) {
             let part = primitives.len() + mesh;
             meshes.push(Solid::new((), part, optics(part)?)?);
         }
-        packet.solids = Solids::new(first, balls, soup, meshes);
+        packet.solids = Solids::new(first, balls, soup, meshes, smooth);
         laws.extend(packet.solids.iter().flat_map(Solids::laws));
         packet.one_sided = laws.iter().any(|law| law.inner() == 0.0);
         packet.others = laws.iter().any(|law| !law.is_diffuse());
@@ -159,11 +163,22 @@ impl Packet {
         points: &mut [U],
         values: &mut [Vec3],
     ) {
-        self.arch.dispatch(Walk {
+        let sky = single.sky();
+        if self.solids.is_none() && !self.others && sky.is_none() {
+            return self.arch.dispatch(Walk::<_, true> {
+                packet: self,
+                paths,
+                single,
+                sky,
+                points,
+                values,
+            });
+        }
+        self.arch.dispatch(Walk::<_, false> {
             packet: self,
             paths,
             single,
-            sky: single.sky(),
+            sky,
             points,
             values,
         });

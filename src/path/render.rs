@@ -41,7 +41,7 @@ pub struct Pixel<'a, B, L, E, C, F = BoxFilter> {
     pub size: [u32; 2],
 }
 
-/// Coordinates computed ahead of paths that the surroundings soon end: those of the film and of two surfaces.
+/// Coordinates computed ahead of paths that the surroundings soon end: those of the film and of two surfaces without lamps.
 const AHEAD: u32 = 10;
 
 /// Coordinates computed ahead where nothing is around the scene.

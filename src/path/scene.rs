@@ -104,13 +104,14 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
         if B::Detail::is_nothing() && are_few(&objects) && instances.is_empty() {
             objects.iter_mut().for_each(Object::take_apart);
         }
+        let shines = |object: &Object<B>| object.radiance != Radiance::Nothing;
+        let meshes_shine = objects
+            .iter()
+            .any(|one| shines(one) && !one.meshes.is_empty());
         let (shapes, meshes) = parts.add(objects)?;
         let mut copies = Vec::new();
         for Instances { objects, places } in instances {
-            if objects
-                .iter()
-                .any(|object| object.radiance != Radiance::Nothing)
-            {
+            if objects.iter().any(shines) {
                 let given = "one that does";
                 return Err(Error::refused("instance", "one that emits no light", given));
             }
@@ -125,13 +126,17 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
             }
         }
         let at_once = parts.are_plain(&shapes)
+            && !meshes_shine
             && copies.is_empty()
             && (environment.constant().is_some() || environment.as_sky().is_some());
         let geometry = Geometry::new(shapes, meshes, copies);
         check_scene(geometry.bounds())?;
         let mut emitters = parts.emitters;
         // Where many paths go at once, drawing from the area is much the faster way.
-        if !at_once || nearby::are_lit(&geometry, &emitters) {
+        let from_area = at_once
+            && L::new(emitters.clone())?.as_area_lights().is_some()
+            && !nearby::are_lit(&geometry, &emitters);
+        if !from_area {
             emitters.iter_mut().for_each(Emitter::by_solid_angle);
         }
         #[cfg_attr(
@@ -178,7 +183,8 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
                 emitted,
             })
         };
-        Packet::new(&self.geometry, optics, lights, around)
+        let smooth = !B::Detail::is_nothing();
+        Packet::new(&self.geometry, optics, lights, around, smooth)
     }
 }
 

@@ -20,6 +20,7 @@ pub(in crate::path) struct Soup {
     tree: Tree,
     /// Those of each leaf of the tree.
     blocks: Vec<Flats>,
+    bounds: [Vec3A; 2],
 }
 
 impl Soup {
@@ -36,7 +37,9 @@ impl Soup {
             .leaves()
             .flat_map(|leaf| Flats::blocks(leaf.map(|triangle| &flats[triangle])))
             .collect();
+        let bounds = super::around(flats.iter().map(Shape::bounds));
         Some(Self {
+            bounds,
             meshes,
             starts,
             flats,
@@ -46,7 +49,7 @@ impl Soup {
     }
 
     pub(super) fn bounds(&self) -> [Vec3A; 2] {
-        super::around(self.flats.iter().map(Shape::bounds))
+        self.bounds
     }
 
     #[inline]
@@ -78,6 +81,12 @@ impl Soup {
     pub(in crate::path) fn normal(&self, mesh: usize, triangle: usize, surface: &Surface) -> Vec3A {
         let within = triangle - self.starts[mesh];
         self.meshes[mesh].normal(within, &self.flats[triangle], surface)
+    }
+
+    /// How many triangles there are.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn triangles(&self) -> usize {
+        self.flats.len()
     }
 
     /// The meshes.

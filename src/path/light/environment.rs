@@ -19,8 +19,9 @@ pub trait Environment: Sync {
         None
     }
 
-    /// The picture of a sky, if it is that and nothing else, and draws what that draws: a scene with such an environment may be traced many
-    /// paths at once. `None` unless implemented.
+    /// The picture of a sky, if [`emitted`](Self::emitted) and [`sample`](Self::sample) are those of that sky in every
+    /// respect: a scene with such an environment may be traced many paths at once, and asks the sky itself. `None` unless
+    /// implemented.
     fn as_sky(&self) -> Option<&Sky> {
         None
     }

@@ -12,7 +12,7 @@ use crate::path::geometry::Hit;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
 use crate::path::light::{Emission, Sky};
 
-/// Directions with weights and densities.
+/// Weights and densities, and the directions they belong to where those were drawn.
 pub(super) struct Weights {
     direction: [Row<f32>; 3],
     weight: [Row<f32>; 3],
@@ -49,16 +49,7 @@ impl Weights {
 }
 
 /// Light of a sky, with the weight that it has: the radiance, over the density where it was drawn.
-pub(super) struct SkyLight(Weights);
-
-impl core::ops::Deref for SkyLight {
-    type Target = Weights;
-
-    #[inline(always)]
-    fn deref(&self) -> &Weights {
-        &self.0
-    }
-}
+pub(super) struct SkyLight(pub(super) Weights);
 
 impl SkyLight {
     pub(super) const NONE: Self = Self(Weights::NONE);
@@ -94,14 +85,14 @@ impl SkyLight {
     /// The way to the light.
     #[inline(always)]
     pub(super) fn lamp<S: Simd>(&self, simd: S, here: &Here<'_, S>, active: Mask<S>) -> Lamp<S> {
-        let density = self.density(simd);
+        let density = self.0.density(simd);
         let active = active & density.gt(Real::splat(simd, 0.0));
-        let into = self.direction(simd);
+        let into = self.0.direction(simd);
         Lamp {
             start: here.place.leave(here.point, into),
             into,
             limit: Real::splat(simd, f32::INFINITY),
-            weight: self.weight(simd),
+            weight: self.0.weight(simd),
             density: active.select(density, Real::splat(simd, 1.0)),
             active,
         }
@@ -110,18 +101,9 @@ impl SkyLight {
 
 /// What laws of scattering draw that are not ideally diffuse.
 pub(super) struct Scatters {
-    drawn: Weights,
+    pub(super) drawn: Weights,
     eta: Row<f32>,
     goes_on: Row<f32>,
-}
-
-impl core::ops::Deref for Scatters {
-    type Target = Weights;
-
-    #[inline(always)]
-    fn deref(&self) -> &Weights {
-        &self.drawn
-    }
 }
 
 impl Scatters {

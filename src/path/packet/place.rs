@@ -12,7 +12,7 @@ pub(super) const MOST: usize = 64;
 
 type Column = [f32; MOST];
 
-/// What is known of each shape.
+/// What is known of each flat shape.
 #[derive(Debug)]
 pub(super) struct Table {
     corner: [Column; 3],
@@ -45,7 +45,7 @@ impl Table {
         area: NOTHING,
         albedo: [NOTHING; 3],
         radiance: [NOTHING; 3],
-        chance: NOTHING,
+        chance: [DARK; MOST],
         kind: NOTHING,
         inner: NOTHING,
         part: [0; MOST],

@@ -18,6 +18,8 @@ pub(super) struct Solids {
     first: u32,
     soup: Option<Arc<Soup>>,
     meshes: Vec<Solid<()>>,
+    /// Whether laws heed interpolated normals.
+    smooth: bool,
 }
 
 /// What is known of a solid.
@@ -165,12 +167,14 @@ impl Solids {
         spheres: Vec<Solid<Sphere>>,
         soup: Option<&Arc<Soup>>,
         meshes: Vec<Solid<()>>,
+        smooth: bool,
     ) -> Option<Self> {
         (!(spheres.is_empty() && meshes.is_empty())).then(|| Self {
             spheres,
             first,
             soup: soup.map(Arc::clone),
             meshes,
+            smooth,
         })
     }
 
@@ -191,9 +195,10 @@ impl Solids {
                 let mesh = soup.mesh(shape);
                 let surface = soup.surface(shape, &ray, distance);
                 points.set(lane, &self.meshes[mesh], &surface);
-                let shading = soup.normal(mesh, shape, &surface);
-                Row::set_vector(&mut points.shading, lane, shading);
-                // There are fewer than 2^32 triangles where packets are made.
+                if self.smooth {
+                    let shading = soup.normal(mesh, shape, &surface);
+                    Row::set_vector(&mut points.shading, lane, shading);
+                }
                 #[expect(clippy::cast_possible_truncation, reason = "fewer than 2^32")]
                 let triangle = shape as u32;
                 points.triangle.0[lane] = triangle;

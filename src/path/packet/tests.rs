@@ -161,6 +161,9 @@ fn packets_give_the_bits_of_single_paths_among_meshes() {
     for height in [0.9, -0.6] {
         agree(&meshes::<Lambertian, _>(false, height, NoEnvironment).unwrap());
         agree(&meshes::<Material<Texture>, _>(true, height, NoEnvironment).unwrap());
+        // Laws that do not heed interpolated normals.
+        agree(&meshes::<Lambertian, _>(true, height, NoEnvironment).unwrap());
+        agree(&meshes::<Material<Uniform>, _>(true, height, sky).unwrap());
         agree(&meshes::<Material<Texture>, _>(true, height, sky).unwrap());
     }
 }
@@ -270,6 +273,38 @@ fn packets_give_the_bits_of_single_paths_among_spheres_of_any_law() {
     agree(&balls::<_, NoLight, _>(false, grey, surroundings).unwrap());
     agree(&balls::<_, AreaLights, _>(true, tiles(), sky()).unwrap());
     agree(&balls::<_, NoLight, _>(false, tiles(), constant).unwrap());
+}
+
+#[test]
+fn packets_give_the_bits_of_single_paths_among_spheres_or_meshes_alone() {
+    let sky = Constant::new([0.2, 0.3, 0.4]).unwrap();
+    let mut view = scenes::environment();
+    let law = || Lambertian::new([0.5; 3]).unwrap();
+    let ball = Sphere::new([0.0, 0.5, 0.0], 1.0).unwrap();
+    view.scene = Scene::new(vec![Object::new([ball], law())], sky).unwrap();
+    agree(&view);
+    let corners = |k: u16| [0.0, 1.0, 2.5].map(|shift| (f32::from(k) + shift).sin());
+    let triangles = (0..58).map(|first| [first, first + 1, first + 2]).collect();
+    let mesh = Mesh::new((0..60).map(corners).collect(), triangles).unwrap();
+    view.scene = Scene::new(vec![Object::mesh(mesh, law())], sky).unwrap();
+    agree(&view);
+}
+
+#[test]
+fn lights_of_scenes_without_packets_are_drawn_by_solid_angle() {
+    let law = || Lambertian::new([0.5; 3]).unwrap();
+    let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let triangles = (0..60).map(|k| [k % 4, (k + 1) % 4, (k + 2) % 4]).collect();
+    let mesh = Mesh::new(corners, triangles).unwrap();
+    let shining = Object::<Lambertian>::mesh(mesh, law())
+        .emitting([1.0; 3])
+        .unwrap();
+    let scene: Scene<_, AreaLights, _> = Scene::new(vec![shining], NoEnvironment).unwrap();
+    assert!(scene.packet().is_none());
+    assert!(scene.lights().shapes().all(|shape| match shape {
+        Primitive::Flat(flat) => flat.is_by_solid_angle(),
+        _ => false,
+    }));
 }
 
 #[test]

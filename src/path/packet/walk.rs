@@ -19,7 +19,10 @@ use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
 use crate::path::light::Sky;
 
 /// The paths of some points.
-pub(super) struct Walk<'a, U> {
+///
+/// `PLAIN` ones are in a scene of flat shapes that scatter light ideally diffusely, without a picture around it: the code for all else
+/// is left out.
+pub(super) struct Walk<'a, U, const PLAIN: bool> {
     pub(super) packet: &'a Packet,
     pub(super) paths: Paths,
     pub(super) single: &'a dyn Single<U>,
@@ -79,7 +82,7 @@ impl State {
     }
 }
 
-impl<U: Sampler> WithSimd for Walk<'_, U> {
+impl<U: Sampler, const PLAIN: bool> WithSimd for Walk<'_, U, PLAIN> {
     type Output = ();
 
     /// Follows a path in each lane; where one ends the next one begins.
@@ -126,11 +129,13 @@ struct Laws<'a, S: Simd> {
     hits: Option<&'a Hits<'a>>,
 }
 
-impl<U: Sampler> Walk<'_, U> {
+impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
     /// Takes every path one segment on, as an iteration of [`Paths::radiance`] does.
     #[inline(always)]
     fn step<S: Simd>(&mut self, simd: S, state: &mut State) {
         let packet = self.packet;
+        let others = !PLAIN && packet.others;
+        let sky = self.sky.filter(|_| !PLAIN);
         let (zero, one) = (Real::splat(simd, 0.0), Real::splat(simd, 1.0));
         let origin = Vector::load(simd, &state.origin);
         let direction = Vector::load(simd, &state.direction);
@@ -142,7 +147,8 @@ impl<U: Sampler> Walk<'_, U> {
         let walking = segment.gt(zero);
         let hit = packet.shapes.nearest(simd, origin, direction);
         let mut met = walking & hit.distance.lt(Real::splat(simd, f32::INFINITY));
-        let solids = packet.solids.as_ref().map(|solids| {
+        let solids = packet.solids.as_ref().filter(|_| !PLAIN);
+        let solids = solids.map(|solids| {
             let rays = Rays {
                 origin: &state.origin,
                 direction: &state.direction,
@@ -155,13 +161,18 @@ impl<U: Sampler> Walk<'_, U> {
             met = met | solids.met(simd);
         }
         let missed = walking & !met;
-        if let Some(sky) = self.sky {
+        if let Some(sky) = sky {
             if missed.any() {
                 let light = SkyLight::emitted(sky, &state.direction, &missed.row(simd));
-                let other = light.density(simd);
-                let sum = radiance + throughput * light.weight(simd) * power(density, other);
+                let other = light.0.density(simd);
+                let sum = radiance + throughput * light.0.weight(simd) * power(density, other);
                 radiance = missed.choose(sum, radiance);
             }
+        } else if others {
+            // As the loop over single paths has it, whatever the densities of a law are.
+            let around = Vector::splat(simd, packet.around);
+            let sum = radiance + throughput * around * power(density, zero);
+            radiance = missed.choose(sum, radiance);
         } else if packet.around != Vec3A::ZERO {
             let sum = radiance + throughput * Vector::splat(simd, packet.around);
             radiance = missed.choose(sum, radiance);
@@ -185,8 +196,8 @@ impl<U: Sampler> Walk<'_, U> {
             zero.store(&mut state.segment);
             return;
         }
-        let hits = (packet.others).then(|| here.hits(&packet.table, &state.direction));
-        let kind = if packet.others {
+        let hits = others.then(|| here.hits(&packet.table, &state.direction));
+        let kind = if others {
             here.kind(simd, &packet.table)
         } else {
             zero
@@ -200,10 +211,10 @@ impl<U: Sampler> Walk<'_, U> {
         };
 
         let mut chosen = packet.first_light();
-        let (mut sky, mut scattered) = (None, None);
-        let [a, b, c, d] = if packet.others || self.sky.is_some() {
+        let (mut light, mut scattered) = (None, None);
+        let [a, b, c, d] = if others || sky.is_some() {
             let scattered = scattered.insert(Scatters::NONE);
-            let drawn = (&mut chosen, &mut sky, scattered);
+            let drawn = (&mut chosen, &mut light, scattered);
             self.draw(simd, state, (walking, &kind.row()), at.hits, drawn)
         } else {
             self.draw_diffuse(simd, state, walking, &mut chosen)
@@ -211,15 +222,15 @@ impl<U: Sampler> Walk<'_, U> {
 
         // Next-event estimation: light met by drawing a point of the lights, and one of the sky.
         let mut seeing = walking;
-        if packet.others {
+        if others {
             seeing = seeing & kind.lt(Real::splat(simd, DELTA));
         }
         if !packet.emitters.is_empty() {
             let lamp = packet.lamp(simd, &here, &chosen, [a, b], seeing);
             radiance = self.lit(simd, &at, &lamp, &packet.dividing, (throughput, radiance));
         }
-        if let Some(sky) = &sky {
-            let lamp = sky.lamp(simd, &here, seeing);
+        if let Some(light) = &light {
+            let lamp = light.lamp(simd, &here, seeing);
             radiance = self.lit(simd, &at, &lamp, &packet.shapes, (throughput, radiance));
         }
 
@@ -229,13 +240,17 @@ impl<U: Sampler> Walk<'_, U> {
         let mut weight = at.albedo;
         let mut drawn = FRAC_1_PI * local.z;
         let mut next = around(at.shading * one.copysign(facing), local);
-        let mut eta = Real::load(simd, &state.eta);
+        let mut eta = if others {
+            Real::load(simd, &state.eta)
+        } else {
+            one
+        };
         if let Some(scattered) = &scattered {
             let other = at.other;
             goes_on = (other & scattered.goes_on(simd)) | (!other & goes_on);
-            weight = other.choose(scattered.weight(simd), weight);
-            drawn = other.select(scattered.density(simd), drawn);
-            next = other.choose(scattered.direction(simd), next);
+            weight = other.choose(scattered.drawn.weight(simd), weight);
+            drawn = other.select(scattered.drawn.density(simd), drawn);
+            next = other.choose(scattered.drawn.direction(simd), next);
             eta = eta * other.select(scattered.eta(simd), one);
         }
         walking = walking & goes_on;
@@ -252,7 +267,9 @@ impl<U: Sampler> Walk<'_, U> {
         throughput.store(&mut state.throughput);
         radiance.store(&mut state.radiance);
         drawn.store(&mut state.density);
-        eta.store(&mut state.eta);
+        if others {
+            eta.store(&mut state.eta);
+        }
         walking
             .select(segment + 1.0, zero)
             .store(&mut state.segment);
@@ -289,7 +306,8 @@ impl<U: Sampler> Walk<'_, U> {
             return radiance;
         }
         let mut visible = !between.occluded(lamp.start, lamp.into, lamp.limit, !active);
-        if let Some(soup) = self.packet.solids.as_ref().and_then(Solids::soup) {
+        let solids = self.packet.solids.as_ref().filter(|_| !PLAIN);
+        if let Some(soup) = solids.and_then(Solids::soup) {
             let rays = Rays {
                 origin: &lamp.start.rows(),
                 direction: &lamp.into.rows(),

@@ -163,7 +163,7 @@ impl Flat {
 
     /// The point at `u`, uniform on the area.
     #[inline]
-    fn at_area(&self, [a, b]: [f32; 2]) -> Surface {
+    pub(in crate::path) fn at_area(&self, [a, b]: [f32; 2]) -> Surface {
         if self.slant == 0.0 {
             return self.at(a, b);
         }

@@ -17,8 +17,6 @@ use glam::Vec3A;
 
 use super::Shading;
 use super::ray::{Ray, Surface};
-#[cfg(feature = "simd")]
-use super::shape::Flat;
 use super::shape::{Mesh, Primitive, Shape};
 
 pub(in crate::path) use copies::Copied;
@@ -84,12 +82,6 @@ pub(in crate::path) fn around(boxes: impl Iterator<Item = [Vec3A; 2]>) -> [Vec3A
     boxes.fold(nothing, |[low, high], [l, h]| [low.min(l), high.max(h)])
 }
 
-/// The boxes around what is no shape of its own.
-fn others(soup: Option<&Soup>, copies: Option<&Copies>) -> impl Iterator<Item = [Vec3A; 2]> {
-    let soup = soup.map(Soup::bounds);
-    soup.into_iter().chain(copies.map(Copies::bounds))
-}
-
 impl Geometry {
     pub(in crate::path) fn new(
         shapes: Vec<Primitive>,
@@ -97,7 +89,8 @@ impl Geometry {
         copies: Vec<Copied>,
     ) -> Self {
         let (soup, copies) = (Soup::new(meshes), Copies::new(copies));
-        let others: Vec<_> = others(soup.as_ref(), copies.as_ref()).collect();
+        let soups = soup.iter().map(Soup::bounds);
+        let others: Vec<_> = soups.chain(copies.iter().map(Copies::bounds)).collect();
         let search = if shapes.len() <= FEW {
             Search::Sweep(Sweep::new(&shapes, &others))
         } else {
@@ -189,13 +182,6 @@ impl Geometry {
             }),
             _ => None,
         }
-    }
-
-    /// Whether a flat shape can be in the way between two points of the scene.
-    #[cfg(feature = "simd")]
-    pub(in crate::path) fn divides(&self, flat: &Flat) -> bool {
-        let others: Vec<_> = others(self.soup.as_deref(), self.copies.as_ref()).collect();
-        kind::divides(flat, &self.shapes, &others)
     }
 
     /// Whether any shape is in the way from one point of the scene to another, at `limit`.

@@ -17,6 +17,8 @@ pub(in crate::path) const WIDEST: usize = 16;
 pub(in crate::path) struct Row<T>(pub(in crate::path) [T; WIDEST]);
 
 impl Row<f32> {
+    pub(in crate::path) const ZERO: Self = Self([0.0; WIDEST]);
+
     /// The vector of a lane of three rows.
     #[inline(always)]
     pub(in crate::path) fn vector([x, y, z]: &[Self; 3], lane: usize) -> Vec3A {
@@ -30,10 +32,6 @@ impl Row<f32> {
             row.0[lane] = number;
         }
     }
-}
-
-impl Row<f32> {
-    pub(in crate::path) const ZERO: Self = Self([0.0; WIDEST]);
 }
 
 impl Row<u32> {

@@ -106,7 +106,7 @@ impl Packet {
         };
         let mut emitters = Vec::new();
         let mut laws = Vec::new();
-        for (number, &shape) in (0_u32..).zip(flats) {
+        for ((number, &shape), &divides) in (0_u32..).zip(flats).zip(&sweep.divides) {
             let Primitive::Flat(flat) = &primitives[shape] else {
                 return None;
             };
@@ -114,7 +114,7 @@ impl Packet {
             let part = u32::try_from(shape).ok()?;
             packet.table.set(number as usize, part, flat, &optics);
             packet.shapes.push(number, flat);
-            if geometry.divides(flat) {
+            if divides {
                 packet.dividing.push(number, flat);
             }
             packet.triangles |= flat.slant != 0.0;
@@ -163,22 +163,27 @@ impl Packet {
         points: &mut [U],
         values: &mut [Vec3],
     ) {
-        let sky = single.sky();
-        if self.solids.is_none() && !self.others && sky.is_none() {
-            return self.arch.dispatch(Walk::<_, true> {
-                packet: self,
-                paths,
-                single,
-                sky,
-                points,
-                values,
-            });
+        let plain = self.solids.is_none() && !self.others && single.sky().is_none();
+        if plain {
+            self.walk::<U, true>(paths, single, points, values);
+        } else {
+            self.walk::<U, false>(paths, single, points, values);
         }
-        self.arch.dispatch(Walk::<_, false> {
+    }
+
+    #[inline]
+    fn walk<U: Sampler, const PLAIN: bool>(
+        &self,
+        paths: Paths,
+        single: &dyn Single<U>,
+        points: &mut [U],
+        values: &mut [Vec3],
+    ) {
+        self.arch.dispatch(Walk::<_, PLAIN> {
             packet: self,
             paths,
             single,
-            sky,
+            sky: single.sky(),
             points,
             values,
         });

@@ -20,6 +20,9 @@ pub(in crate::path) struct Sweep {
     dividing: Vec<Flats>,
     /// Which shape each of the flats is: those of simple equations come first.
     pub(in crate::path) flat_shapes: Vec<usize>,
+    /// Which of them can be between two points of the scene.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) divides: Vec<bool>,
     balls: Vec<Balls>,
     /// Which shape each of the spheres is.
     pub(in crate::path) ball_shapes: Vec<usize>,
@@ -42,10 +45,15 @@ impl Sweep {
         }
         flats.sort_by_key(|(_, flat)| Kind::of(flat));
         let in_order = flats.iter().map(|&(_, flat)| flat);
-        let dividing = in_order.clone().filter(|flat| divides(flat, shapes, boxes));
+        let divides = in_order.clone().map(|flat| divides(flat, shapes, boxes));
+        let divides: Vec<_> = divides.collect();
+        let dividing = in_order.clone().zip(&divides);
+        let dividing = dividing.filter_map(|(flat, &divides)| divides.then_some(flat));
         Self {
             flats: Flats::blocks(in_order.clone()),
             dividing: Flats::blocks(dividing),
+            #[cfg(feature = "simd")]
+            divides,
             flat_shapes: flats.iter().map(|&(index, _)| index).collect(),
             balls: Balls::blocks(balls.iter().map(|&(_, sphere)| sphere)),
             ball_shapes: balls.iter().map(|&(index, _)| index).collect(),

@@ -30,8 +30,8 @@ impl Image {
         Self::new(width, pixels).map_err(|reason| FileError::new(path, reason))
     }
 
-    /// Writes red, green and blue to an OpenEXR file, in 32-bit floats; the same picture is the same file to the byte. The standard errors are an
-    /// [image of their own](Self::std_error).
+    /// Writes red, green and blue to an OpenEXR file, in 32-bit floats; the same picture is the same file to the byte. The
+    /// standard errors are an [image of their own](Self::std_error).
     ///
     /// # Errors
     ///

@@ -52,7 +52,7 @@ impl Weights {
 pub(super) struct SkyLight(pub(super) Weights);
 
 impl SkyLight {
-    pub(super) const NONE: Self = Self(Weights::NONE);
+    const NONE: Self = Self(Weights::NONE);
 
     /// The radiance from the directions of the active lanes, and the density with which they are drawn.
     #[inline(never)]

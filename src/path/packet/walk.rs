@@ -61,12 +61,10 @@ impl State {
 
     #[inline(always)]
     fn begin(&mut self, lane: usize, point: usize, Start { ray, weight }: Start) {
-        for axis in 0..3 {
-            self.origin[axis].0[lane] = ray.origin[axis];
-            self.direction[axis].0[lane] = ray.direction[axis];
-            self.throughput[axis].0[lane] = 1.0;
-            self.radiance[axis].0[lane] = 0.0;
-        }
+        Row::set_vector(&mut self.origin, lane, ray.origin);
+        Row::set_vector(&mut self.direction, lane, ray.direction);
+        Row::set_vector(&mut self.throughput, lane, Vec3A::ONE);
+        Row::set_vector(&mut self.radiance, lane, Vec3A::ZERO);
         // The density of the camera's direction, which is no choice.
         self.density.0[lane] = f32::INFINITY;
         self.eta.0[lane] = 1.0;
@@ -77,8 +75,7 @@ impl State {
 
     #[inline(always)]
     fn value(&self, lane: usize) -> Vec3 {
-        let [r, g, b] = &self.radiance;
-        Vec3::new(r.0[lane], g.0[lane], b.0[lane]) * self.weight.0[lane]
+        Vec3::from(Row::vector(&self.radiance, lane)) * self.weight.0[lane]
     }
 }
 
@@ -211,10 +208,10 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         };
 
         let mut chosen = packet.first_light();
-        let (mut light, mut scattered) = (None, None);
+        let mut light = None;
+        let mut scattered = others.then_some(Scatters::NONE);
         let [a, b, c, d] = if others || sky.is_some() {
-            let scattered = scattered.insert(Scatters::NONE);
-            let drawn = (&mut chosen, &mut light, scattered);
+            let drawn = (&mut chosen, &mut light, scattered.as_mut());
             self.draw(simd, state, (walking, &kind.row()), at.hits, drawn)
         } else {
             self.draw_diffuse(simd, state, walking, &mut chosen)
@@ -320,8 +317,9 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         visible.choose(radiance + sum, radiance)
     }
 
-    /// What the paths draw at their points, where laws are of any kind or the sky is a picture: two coordinates for a point of the lights, which choose one
-    /// first; two for the sky; and two for the next direction of the ideally diffuse law, or what others draw.
+    /// What the paths draw at their points, where laws are of any kind or the sky is a picture: two coordinates for a point of
+    /// the lights, which choose one first; two for the sky; and two for the next direction of the ideally diffuse law, or
+    /// what others draw.
     #[inline(always)]
     fn draw<S: Simd>(
         &mut self,
@@ -329,7 +327,11 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         state: &State,
         (walking, kinds): (Mask<S>, &Row<f32>),
         hits: Option<&Hits<'_>>,
-        (chosen, light, scattered): (&mut Row<u32>, &mut Option<SkyLight>, &mut Scatters),
+        (chosen, light, mut scattered): (
+            &mut Row<u32>,
+            &mut Option<SkyLight>,
+            Option<&mut Scatters>,
+        ),
     ) -> [Real<S>; 4] {
         let lit = !self.packet.emitters.is_empty();
         let walks = walking.row(simd);
@@ -351,7 +353,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             if kind == 0.0 {
                 let [c, d] = sampler.next_2d();
                 (u[2].0[lane], u[3].0[lane]) = (single(c), single(d));
-            } else if let Some(hits) = hits {
+            } else if let (Some(hits), Some(scattered)) = (hits, &mut scattered) {
                 let (hit, out) = (hits.hit(lane), hits.out(lane));
                 scattered.set(lane, self.single.sample(&hit, out, sampler));
             }

@@ -307,7 +307,8 @@ struct Careful<'a, I: Integrand> {
 }
 
 impl<I: Integrand> Careful<'_, I> {
-    fn point<S: Sampler>(&mut self, index: u64, u: S) -> ControlFlow<()> {
+    /// Behind a pointer: the integrand is compiled for it once, not once more for every point set.
+    fn point(&mut self, index: u64, u: &mut dyn Sampler) -> ControlFlow<()> {
         self.coordinates.clear();
         let mut u = Recorder {
             inner: u,
@@ -333,7 +334,7 @@ impl<I: Integrand> Visit for Careful<'_, I> {
     fn stream<S: Sampler>(&mut self, mut indices: Range<u64>, u: &mut S, begin: impl Fn(&mut S)) {
         let _ = indices.try_for_each(|index| {
             begin(u);
-            self.point(index, &mut *u)
+            self.point(index, u)
         });
     }
 
@@ -342,6 +343,6 @@ impl<I: Integrand> Visit for Careful<'_, I> {
         mut indices: Range<u64>,
         at: impl Fn(u64) -> S,
     ) -> ControlFlow<()> {
-        indices.try_for_each(|index| self.point(index, at(index)))
+        indices.try_for_each(|index| self.point(index, &mut at(index)))
     }
 }

@@ -40,16 +40,62 @@ impl BinaryScramble for LinearMatrix {
             let diagonal = 1_u64 << (63 - row);
             (hash(key, row as u64) & !(diagonal - 1)) | diagonal
         });
-        Some(columns.map(|column| {
-            (0..).zip(&rows).fold(0, |digits, (row, &entries)| {
-                let digit = u64::from((entries & column).count_ones() & 1);
-                digits | digit << (63 - row)
-            })
-        }))
+        let matrix = transposed(rows);
+        Some(columns.map(|column| product(&matrix, column)))
     }
 
     #[inline(always)]
     fn scramble(&self, key: u64, digits: u64) -> u64 {
         digits ^ key
+    }
+}
+
+/// The matrix of these columns times a column: the sum of those where it has ones, of which a generator matrix has few.
+fn product(matrix: &Columns, mut column: u64) -> u64 {
+    let mut sum = 0;
+    while column != 0 {
+        let place = column.leading_zeros();
+        sum ^= matrix[place as usize];
+        column ^= 1 << (63 - place);
+    }
+    sum
+}
+
+/// Rows to columns: swaps the two quarters off the diagonal, then those of each quarter, down to single bits.[^warren]
+///
+/// [^warren]: Warren, Henry (2012). *Hacker's Delight*, 2nd edition, section 7-3. ISBN 978-0-321-84268-8.
+fn transposed(mut matrix: Columns) -> Columns {
+    let mut half = 32;
+    let mut right = u64::MAX >> half;
+    while half > 0 {
+        for upper in (0..64).filter(|row| row & half == 0) {
+            let lower = upper + half;
+            let swapped = (matrix[upper] ^ matrix[lower] >> half) & right;
+            matrix[upper] ^= swapped;
+            matrix[lower] ^= swapped << half;
+        }
+        half /= 2;
+        right ^= right << half;
+    }
+    matrix
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the definition: a digit of the product is the parity of a row and the column.
+    #[test]
+    fn a_product_has_the_parities_of_the_rows() {
+        let rows: Columns = core::array::from_fn(|row| hash(1, row as u64));
+        let matrix = transposed(rows);
+        for column in (0..100).map(|place| hash(2, place)).chain([0, 1, 1 << 63]) {
+            let digits = product(&matrix, column);
+            for (row, entries) in rows.into_iter().enumerate() {
+                let parity = u64::from((entries & column).count_ones() % 2);
+                assert_eq!(digits >> (63 - row) & 1, parity, "row {row} of {column:x}");
+            }
+        }
+        assert_eq!(transposed(matrix), rows);
     }
 }

@@ -11,8 +11,6 @@ mod stack;
 mod sweep;
 mod tree;
 
-use std::sync::Arc;
-
 use glam::Vec3A;
 
 use super::Shading;
@@ -23,8 +21,11 @@ pub(in crate::path) use copies::Copied;
 use copies::Copies;
 #[cfg(feature = "simd")]
 pub(in crate::path) use kind::{Kind, axis};
-pub(in crate::path) use soup::Soup;
+use soup::Soup;
+#[cfg(feature = "simd")]
 pub(in crate::path) use sweep::Sweep;
+#[cfg(not(feature = "simd"))]
+use sweep::Sweep;
 use tree::Tree;
 
 /// The shapes of a scene, and a way to find them.
@@ -32,7 +33,7 @@ use tree::Tree;
 pub(in crate::path) struct Geometry {
     shapes: Vec<Primitive>,
     search: Search,
-    soup: Option<Arc<Soup>>,
+    soup: Option<Soup>,
     copies: Option<Copies>,
     bounds: [Vec3A; 2],
 }
@@ -51,14 +52,6 @@ enum Search {
 pub(in crate::path) struct Found {
     pub(in crate::path) shape: usize,
     pub(in crate::path) distance: f32,
-}
-
-/// Few shapes, and meshes.
-#[cfg(feature = "simd")]
-pub(in crate::path) struct Few<'a> {
-    pub(in crate::path) shapes: &'a [Primitive],
-    pub(in crate::path) sweep: &'a Sweep,
-    pub(in crate::path) soup: Option<&'a Arc<Soup>>,
 }
 
 /// The nearest shape that a ray meets.
@@ -100,7 +93,7 @@ impl Geometry {
         Self {
             shapes,
             search,
-            soup: soup.map(Arc::new),
+            soup,
             copies,
             bounds,
         }
@@ -121,11 +114,16 @@ impl Geometry {
     }
 
     /// The first shape that the ray meets before `limit`, and its distance.
-    fn nearest_within(&self, ray: &Ray, mut limit: f32) -> Option<(Hit, f32)> {
-        let mut nearest = self.nearest_shape(ray, limit);
-        if let Some((_, distance)) = nearest {
-            limit = distance;
-        }
+    fn nearest_within(&self, ray: &Ray, limit: f32) -> Option<(Hit, f32)> {
+        let nearest = self.nearest_shape(ray, limit);
+        let limit = nearest.map_or(limit, |(_, distance)| distance);
+        self.nearest_beside(ray, limit).or(nearest)
+    }
+
+    /// The first triangle of a mesh or shape of a copy that the ray meets before `limit`, and its distance.
+    #[inline]
+    fn nearest_beside(&self, ray: &Ray, mut limit: f32) -> Option<(Hit, f32)> {
+        let mut nearest = None;
         if let Some(soup) = &self.soup
             && let Some(Found { shape, distance }) = soup.nearest(ray, limit)
         {
@@ -150,13 +148,17 @@ impl Geometry {
             Search::Sweep(sweep) => sweep.nearest(ray).filter(|found| found.distance < limit),
             Search::Tree(tree) => tree.nearest(&self.shapes, ray, limit),
         }?;
-        let hit = Hit {
+        Some((self.hit(ray, shape, distance), distance))
+    }
+
+    #[inline]
+    fn hit(&self, ray: &Ray, shape: usize, distance: f32) -> Hit {
+        Hit {
             part: shape,
             surface: self.shapes[shape].surface(ray, distance),
             triangle: 0,
             copy: None,
-        };
-        Some((hit, distance))
+        }
     }
 
     /// The parametrisation of a shape at a point of it.
@@ -171,16 +173,59 @@ impl Geometry {
         }
     }
 
-    /// The shapes, if they are few and meshes are all else.
+    /// The shapes.
     #[cfg(feature = "simd")]
-    pub(in crate::path) fn few(&self) -> Option<Few<'_>> {
+    pub(in crate::path) fn shapes(&self) -> &[Primitive] {
+        &self.shapes
+    }
+
+    /// The sweep over the shapes, if they are few.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn sweep(&self) -> Option<&Sweep> {
         match &self.search {
-            Search::Sweep(sweep) if self.copies.is_none() => Some(Few {
-                shapes: &self.shapes,
-                sweep,
-                soup: self.soup.as_ref(),
-            }),
-            _ => None,
+            Search::Sweep(sweep) => Some(sweep),
+            Search::Tree(_) => None,
+        }
+    }
+
+    /// Whether there is anything but few flat shapes and spheres: the *rest*.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn has_rest(&self) -> bool {
+        let few = self.sweep().is_some_and(|sweep| sweep.others.is_empty());
+        !few || self.soup.is_some() || self.copies.is_some()
+    }
+
+    /// What the ray meets first of the rest, before `limit`.
+    #[cfg(feature = "simd")]
+    #[inline]
+    pub(in crate::path) fn nearest_of_rest(&self, ray: &Ray, limit: f32) -> Option<Hit> {
+        let other = self
+            .sweep()
+            .and_then(|sweep| sweep.nearest_other(ray, limit));
+        let limit = other.map_or(limit, |found| found.distance);
+        match (self.nearest_beside(ray, limit), other) {
+            (Some((hit, _)), _) => Some(hit),
+            (None, other) => other.map(|Found { shape, distance }| self.hit(ray, shape, distance)),
+        }
+    }
+
+    /// Whether the ray meets any of the rest nearer than `limit`.
+    #[cfg(feature = "simd")]
+    #[inline]
+    pub(in crate::path) fn occluded_by_rest(&self, ray: &Ray, limit: f32) -> bool {
+        let other = |sweep: &Sweep| sweep.occluded_by_other(ray, limit);
+        self.sweep().is_some_and(other) || self.occluded_by_others(ray, limit)
+    }
+
+    /// The normal that light is scattered by, for laws that heed interpolated ones.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn normal(&self, hit: &Hit) -> Vec3A {
+        if hit.copy.is_some() {
+            return self.shading(hit).normal;
+        }
+        match (hit.part.checked_sub(self.shapes.len()), &self.soup) {
+            (Some(mesh), Some(soup)) => soup.normal(mesh, hit.triangle, &hit.surface),
+            _ => hit.surface.normal,
         }
     }
 
@@ -208,6 +253,6 @@ impl Geometry {
     fn occluded_by_others(&self, ray: &Ray, limit: f32) -> bool {
         let soup = |soup: &Soup| soup.occluded(ray, limit);
         let copies = |copies: &Copies| copies.occluded(ray, limit);
-        self.soup.as_deref().is_some_and(soup) || self.copies.as_ref().is_some_and(copies)
+        self.soup.as_ref().is_some_and(soup) || self.copies.as_ref().is_some_and(copies)
     }
 }

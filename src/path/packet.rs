@@ -1,7 +1,7 @@
 //! Many paths at once, one in each lane of the vectors that the machine has.
 //!
-//! For scenes of few flat shapes and spheres, and meshes, below a constant sky, a picture of one or none; only flat shapes emit light.
-//! Laws of scattering other than the ideally diffuse one, and what a ray finds of spheres and meshes, go lane by lane. Every lane has
+//! For scenes of few shapes, and meshes and copies, below a constant sky, a picture of one or none; only flat shapes emit light.
+//! Laws of scattering other than the ideally diffuse one, and what a ray finds of all that is not flat, go lane by lane. Every lane has
 //! the bits of [`Paths::radiance`]: the same arithmetic in the same order, the coordinates read in the same order.
 
 mod drawn;
@@ -19,7 +19,7 @@ use glam::{Vec3, Vec3A};
 
 use super::Paths;
 use super::bsdf::{Scattered, Scattering};
-use super::geometry::{Few, Geometry, Hit};
+use super::geometry::{Geometry, Hit};
 use super::light::{AreaLights, Sky};
 use super::render::Start;
 use super::shape::Primitive;
@@ -29,7 +29,7 @@ pub(in crate::path) use optics::{Emitted, Law, Optics};
 
 use near::Near;
 use place::{MOST, Table};
-use solids::{Solid, Solids};
+use solids::Solids;
 use sweep::Shapes;
 use walk::Walk;
 
@@ -65,30 +65,39 @@ pub(in crate::path) trait Single<U> {
     /// A direction that the law at a point draws.
     fn sample(&self, at: &Hit, out: Vec3A, u: &mut U) -> Option<Scattered>;
 
+    /// The shapes of the scene.
+    fn geometry(&self) -> &Geometry;
+
     /// The picture around the scene, if that is what is around it.
     fn sky(&self) -> Option<&Sky>;
 }
 
 impl Packet {
-    /// The scene of the given shapes and lights, if it is one of those, with the same radiance from all around. `optics` tells what a
-    /// shape does to light, or a mesh, which have the numbers after the shapes, if that is among what packets know; `smooth`, whether
-    /// laws heed interpolated normals.
+    /// The scene of the given shapes and lights, if it is one of those, with the same radiance from all around. `optics` tells what each of
+    /// the `parts` does to light, as [`Hit`] numbers them, if that is among what packets know; `smooth`, whether laws heed
+    /// interpolated normals.
     pub(in crate::path) fn new(
         geometry: &Geometry,
+        parts: usize,
         optics: impl Fn(usize) -> Option<Optics>,
         lights: &AreaLights,
         around: Vec3A,
         smooth: bool,
     ) -> Option<Self> {
-        let Few {
-            shapes: primitives,
-            sweep,
-            soup,
-        } = geometry.few()?;
+        let (primitives, sweep) = (geometry.shapes(), geometry.sweep()?);
         let (flats, spheres) = (&sweep.flat_shapes, &sweep.ball_shapes);
-        if flats.len() + spheres.len() != primitives.len() || primitives.len() > MOST {
+        // What parts, triangles and copies are is kept in lanes.
+        u32::try_from(parts).ok()?;
+        if primitives.len() > MOST {
             return None;
         }
+        let known = (0..parts).map(&optics).collect::<Option<Vec<_>>>()?;
+        let emits = |part: usize| known[part].emitted.is_some();
+        let is_flat = |part: usize| matches!(primitives.get(part), Some(Primitive::Flat(_)));
+        if (0..parts).any(|part| emits(part) && !is_flat(part)) {
+            return None;
+        }
+        let laws: Vec<Law> = known.iter().map(|optics| optics.law).collect();
         let mut packet = Self {
             table: Table::EMPTY,
             shapes: Shapes::default(),
@@ -100,25 +109,23 @@ impl Packet {
             around,
             triangles: false,
             slanted_lights: false,
-            one_sided: false,
-            others: false,
+            one_sided: laws.iter().any(|law| law.inner() == 0.0),
+            others: laws.iter().any(|law| !law.is_diffuse()),
             arch: pulp::Arch::new(),
         };
         let mut emitters = Vec::new();
-        let mut laws = Vec::new();
         for ((number, &shape), &divides) in (0_u32..).zip(flats).zip(&sweep.divides) {
             let Primitive::Flat(flat) = &primitives[shape] else {
                 return None;
             };
-            let optics = optics(shape)?;
+            let optics = &known[shape];
             let part = u32::try_from(shape).ok()?;
-            packet.table.set(number as usize, part, flat, &optics);
+            packet.table.set(number as usize, part, flat, optics);
             packet.shapes.push(number, flat);
             if divides {
                 packet.dividing.push(number, flat);
             }
             packet.triangles |= flat.slant != 0.0;
-            laws.push(optics.law);
             if let Some(light) = optics.emitted {
                 packet.slanted_lights |= flat.slant != 0.0;
                 emitters.push((light.emitter, number));
@@ -130,21 +137,19 @@ impl Packet {
             let Primitive::Sphere(sphere) = &primitives[shape] else {
                 return None;
             };
-            balls.push(Solid::new(*sphere, shape, optics(shape)?)?);
+            balls.push((*sphere, shape));
             packet.shapes.push_ball(number, sphere);
             packet.dividing.push_ball(number, sphere);
         }
-        // The numbers of triangles are kept in lanes.
-        u32::try_from(soup.map_or(0, |soup| soup.triangles())).ok()?;
-        let mut meshes = Vec::new();
-        for mesh in 0..soup.map_or(0, |soup| soup.meshes().len()) {
-            let part = primitives.len() + mesh;
-            meshes.push(Solid::new((), part, optics(part)?)?);
+        if !balls.is_empty() || geometry.has_rest() {
+            packet.solids = Some(Solids {
+                spheres: balls,
+                first,
+                rest: geometry.has_rest(),
+                laws,
+                smooth,
+            });
         }
-        packet.solids = Solids::new(first, balls, soup, meshes, smooth);
-        laws.extend(packet.solids.iter().flat_map(Solids::laws));
-        packet.one_sided = laws.iter().any(|law| law.inner() == 0.0);
-        packet.others = laws.iter().any(|law| !law.is_diffuse());
         emitters.sort_unstable();
         packet.emitters = emitters.into_iter().map(|(_, shape)| shape).collect();
         packet.near = Near::new(&packet.emitters, lights);

@@ -10,7 +10,7 @@ use super::bsdf::Bsdf;
 use super::bsdf::{Scattered, Scattering};
 use super::filter::{BoxFilter, Filter};
 #[cfg(feature = "simd")]
-use super::geometry::Hit;
+use super::geometry::{Geometry, Hit};
 use super::image::{Image, Row};
 #[cfg(feature = "simd")]
 use super::light::Sky;
@@ -83,6 +83,10 @@ impl<U: Sampler, B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Single
     fn sample(&self, at: &Hit, out: Vec3A, u: &mut U) -> Option<Scattered> {
         let vertex = self.scene.vertex(*at);
         vertex.bsdf.sample(&vertex.surface, out, u)
+    }
+
+    fn geometry(&self) -> &Geometry {
+        self.scene.geometry()
     }
 
     fn sky(&self) -> Option<&Sky> {

@@ -127,7 +127,6 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
         }
         let at_once = parts.are_plain(&shapes)
             && !meshes_shine
-            && copies.is_empty()
             && (environment.constant().is_some() || environment.as_sky().is_some());
         let geometry = Geometry::new(shapes, meshes, copies);
         check_scene(geometry.bounds())?;
@@ -184,7 +183,14 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
             })
         };
         let smooth = !B::Detail::is_nothing();
-        Packet::new(&self.geometry, optics, lights, around, smooth)
+        Packet::new(
+            &self.geometry,
+            self.owners.len(),
+            optics,
+            lights,
+            around,
+            smooth,
+        )
     }
 }
 
@@ -234,6 +240,13 @@ impl<B, L, E> Scene<B, L, E> {
     #[inline]
     pub(in crate::path) fn packet(&self) -> Option<&Packet> {
         self.packet.as_deref()
+    }
+
+    /// All shapes.
+    #[cfg(feature = "simd")]
+    #[inline]
+    pub(in crate::path) fn geometry(&self) -> &Geometry {
+        &self.geometry
     }
 
     /// What is around the shapes.

@@ -12,7 +12,7 @@ use crate::path::shape::{Flat, Mesh, Shape};
 
 /// The triangles of some meshes, one mesh after the other, and a tree around them.
 #[derive(Debug)]
-pub(in crate::path) struct Soup {
+pub(super) struct Soup {
     meshes: Vec<Mesh>,
     /// The number of triangles before each mesh.
     starts: Vec<usize>,
@@ -53,46 +53,34 @@ impl Soup {
     }
 
     #[inline]
-    pub(in crate::path) fn nearest(&self, ray: &Ray, limit: f32) -> Option<Found> {
+    pub(super) fn nearest(&self, ray: &Ray, limit: f32) -> Option<Found> {
         let mut leaves = Blocks(&self.blocks);
         self.tree.nearest_in_leaves(ray, limit, &mut leaves)
     }
 
     #[inline]
-    pub(in crate::path) fn occluded(&self, ray: &Ray, limit: f32) -> bool {
+    pub(super) fn occluded(&self, ray: &Ray, limit: f32) -> bool {
         let mut leaves = Blocks(&self.blocks);
         self.tree.any_in_leaves(ray, limit, &mut leaves)
     }
 
     #[inline]
-    pub(in crate::path) fn surface(&self, triangle: usize, ray: &Ray, distance: f32) -> Surface {
+    pub(super) fn surface(&self, triangle: usize, ray: &Ray, distance: f32) -> Surface {
         self.flats[triangle].surface(ray, distance)
     }
 
     /// Which of the meshes a triangle belongs to.
     #[inline]
-    pub(in crate::path) fn mesh(&self, triangle: usize) -> usize {
+    pub(super) fn mesh(&self, triangle: usize) -> usize {
         self.starts.partition_point(|&start| start <= triangle) - 1
     }
 
     /// The normal that light is scattered by at a point of a triangle.
     #[cfg(feature = "simd")]
     #[inline]
-    pub(in crate::path) fn normal(&self, mesh: usize, triangle: usize, surface: &Surface) -> Vec3A {
+    pub(super) fn normal(&self, mesh: usize, triangle: usize, surface: &Surface) -> Vec3A {
         let within = triangle - self.starts[mesh];
         self.meshes[mesh].normal(within, &self.flats[triangle], surface)
-    }
-
-    /// How many triangles there are.
-    #[cfg(feature = "simd")]
-    pub(in crate::path) fn triangles(&self) -> usize {
-        self.flats.len()
-    }
-
-    /// The meshes.
-    #[cfg(feature = "simd")]
-    pub(in crate::path) fn meshes(&self) -> &[Mesh] {
-        &self.meshes
     }
 
     pub(super) fn shading(&self, triangle: usize, surface: &Surface) -> Shading {

@@ -27,7 +27,7 @@ pub(in crate::path) struct Sweep {
     /// Which shape each of the spheres is.
     pub(in crate::path) ball_shapes: Vec<usize>,
     /// The other shapes, and which they are.
-    others: Vec<(usize, Primitive)>,
+    pub(super) others: Vec<(usize, Primitive)>,
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     simd: Option<pulp::x86::V3>,
 }
@@ -65,8 +65,15 @@ impl Sweep {
 
     #[inline]
     pub(super) fn nearest(&self, ray: &Ray) -> Option<Found> {
-        let mut nearest = self.nearest_in_blocks(ray);
-        let mut limit = nearest.map_or(f32::INFINITY, |found| found.distance);
+        let nearest = self.nearest_in_blocks(ray);
+        let limit = nearest.map_or(f32::INFINITY, |found| found.distance);
+        self.nearest_other(ray, limit).or(nearest)
+    }
+
+    /// The nearest shape before `limit` that is neither flat nor a sphere.
+    #[inline]
+    pub(super) fn nearest_other(&self, ray: &Ray, mut limit: f32) -> Option<Found> {
+        let mut nearest = None;
         for &(shape, other) in &self.others {
             if let Some(distance) = other.intersect(ray, limit) {
                 limit = distance;
@@ -89,9 +96,14 @@ impl Sweep {
 
     #[inline]
     fn any(&self, flats: &[Flats], ray: &Ray, limit: f32) -> bool {
+        self.any_in_blocks(flats, ray, limit) || self.occluded_by_other(ray, limit)
+    }
+
+    /// Whether the ray meets a shape nearer than `limit` that is neither flat nor a sphere.
+    #[inline]
+    pub(super) fn occluded_by_other(&self, ray: &Ray, limit: f32) -> bool {
         let mut others = self.others.iter();
-        self.any_in_blocks(flats, ray, limit)
-            || others.any(|(_, other)| other.intersect(ray, limit).is_some())
+        others.any(|(_, other)| other.intersect(ray, limit).is_some())
     }
 
     /// The nearest shape that is flat or a sphere; of several at the same distance the first.

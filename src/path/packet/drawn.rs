@@ -6,6 +6,7 @@ use pulp::Simd;
 use super::Single;
 use super::here::Here;
 use super::lamp::Lamp;
+use super::solids::Names;
 use crate::path::Surface;
 use crate::path::bsdf::Scattered;
 use crate::path::geometry::Hit;
@@ -139,8 +140,7 @@ pub(super) struct Hits<'a> {
     pub(super) point: [Row<f32>; 3],
     pub(super) normal: [Row<f32>; 3],
     pub(super) margin: Row<f32>,
-    pub(super) part: Row<u32>,
-    pub(super) triangle: Row<u32>,
+    pub(super) names: Names,
     /// The ways that the paths came.
     pub(super) direction: &'a [Row<f32>; 3],
 }
@@ -149,15 +149,15 @@ impl Hits<'_> {
     #[inline(always)]
     pub(super) fn hit(&self, lane: usize) -> Hit {
         Hit {
-            part: self.part.0[lane] as usize,
+            part: self.names.part.0[lane] as usize,
             surface: Surface {
                 point: Row::vector(&self.point, lane),
                 normal: Row::vector(&self.normal, lane),
                 margin: self.margin.0[lane],
                 detail: (),
             },
-            triangle: self.triangle.0[lane] as usize,
-            copy: None,
+            triangle: self.names.triangle.0[lane] as usize,
+            copy: (self.names.copy.0[lane] as usize).checked_sub(1),
         }
     }
 

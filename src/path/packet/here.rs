@@ -5,7 +5,7 @@ use pulp::Simd;
 use super::Packet;
 use super::drawn::Hits;
 use super::place::{DARK, Place, Table};
-use super::solids::Points;
+use super::solids::{Names, Points};
 use super::sweep::Hit;
 use crate::path::lanes::{Mask, Real, Row, Vector};
 
@@ -105,17 +105,15 @@ impl<S: Simd> Here<'_, S> {
     /// The points, to be asked lane by lane, of rays in some directions.
     #[inline(always)]
     pub(super) fn hits<'a>(&self, table: &Table, direction: &'a [Row<f32>; 3]) -> Hits<'a> {
-        let mut part = table.parts(&self.shape);
-        let mut triangle = Row::<u32>::ZERO;
+        let mut names = Names::shapes(table.parts(&self.shape));
         if let Some(solids) = self.solids {
-            solids.name(&mut part, &mut triangle);
+            solids.name(&mut names);
         }
         Hits {
             point: self.point.rows(),
             normal: self.place.normal.rows(),
             margin: self.place.margin.row(),
-            part,
-            triangle,
+            names,
             direction,
         }
     }

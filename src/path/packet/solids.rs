@@ -1,46 +1,27 @@
-//! Spheres and meshes, whose points are found one lane after the other.
+//! All that is not flat, whose points are found one lane after the other.
 
-use std::sync::Arc;
-
+use glam::Vec3A;
 use pulp::Simd;
 
-use super::optics::{Law, Optics};
-use crate::path::geometry::{Found, Soup};
+use super::optics::Law;
+use crate::path::Ray;
+use crate::path::geometry::{Geometry, Hit};
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
 use crate::path::shape::{Shape, Sphere};
-use crate::path::{Ray, Surface};
 
-/// The spheres and the meshes of a scene; they emit no light.
+/// What is not flat in a scene: spheres, and the rest that the [`Geometry`] finds. It emits no light.
 #[derive(Debug)]
 pub(super) struct Solids {
-    spheres: Vec<Solid<Sphere>>,
+    /// The spheres, and which parts of the scene they are.
+    pub(super) spheres: Vec<(Sphere, usize)>,
     /// The number of the first sphere among the shapes; those of the others follow.
-    first: u32,
-    soup: Option<Arc<Soup>>,
-    meshes: Vec<Solid<()>>,
-    /// Whether laws heed interpolated normals.
-    smooth: bool,
-}
-
-/// What is known of a solid.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Solid<T> {
-    pub(super) shape: T,
-    /// Which part of the scene it is.
-    pub(super) part: u32,
-    pub(super) law: Law,
-}
-
-impl<T> Solid<T> {
-    /// `None` if it emits light.
-    pub(super) fn new(shape: T, part: usize, optics: Optics) -> Option<Self> {
-        let part = u32::try_from(part).ok()?;
-        let law = optics.law;
-        optics
-            .emitted
-            .is_none()
-            .then_some(Self { shape, part, law })
-    }
+    pub(super) first: u32,
+    /// Whether there is anything else.
+    pub(super) rest: bool,
+    /// The laws of all parts.
+    pub(super) laws: Vec<Law>,
+    /// Whether they heed interpolated normals.
+    pub(super) smooth: bool,
 }
 
 /// What rays meet of solids, lane by lane.
@@ -54,8 +35,27 @@ pub(super) struct Points {
     albedo: [Row<f32>; 3],
     kind: Row<f32>,
     inner: Row<f32>,
-    part: Row<u32>,
-    triangle: Row<u32>,
+    names: Names,
+}
+
+/// Which part of the scene each lane is at, which triangle of all meshes, and which copy.
+pub(super) struct Names {
+    pub(super) part: Row<u32>,
+    pub(super) triangle: Row<u32>,
+    /// The number after it; 0 for none.
+    pub(super) copy: Row<u32>,
+}
+
+impl Names {
+    /// Shapes.
+    #[inline(always)]
+    pub(super) fn shapes(part: Row<u32>) -> Self {
+        Self {
+            part,
+            triangle: Row::<u32>::ZERO,
+            copy: Row::<u32>::ZERO,
+        }
+    }
 }
 
 impl Points {
@@ -68,21 +68,31 @@ impl Points {
         albedo: [Row::<f32>::ZERO; 3],
         kind: Row::<f32>::ZERO,
         inner: Row::<f32>::ZERO,
-        part: Row::<u32>::ZERO,
-        triangle: Row::<u32>::ZERO,
+        names: Names {
+            part: Row::<u32>::ZERO,
+            triangle: Row::<u32>::ZERO,
+            copy: Row::<u32>::ZERO,
+        },
     };
 
     #[inline(always)]
-    fn set<T>(&mut self, lane: usize, solid: &Solid<T>, surface: &Surface) {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "scenes have fewer than 2^32 parts, triangles and copies"
+    )]
+    fn set(&mut self, lane: usize, law: &Law, hit: &Hit, shading: Vec3A) {
+        let surface = &hit.surface;
         self.met.0[lane] = 1.0;
         Row::set_vector(&mut self.point, lane, surface.point);
         Row::set_vector(&mut self.normal, lane, surface.normal);
-        Row::set_vector(&mut self.shading, lane, surface.normal);
+        Row::set_vector(&mut self.shading, lane, shading);
         self.margin.0[lane] = surface.margin;
-        Row::set_vector(&mut self.albedo, lane, solid.law.albedo);
-        self.kind.0[lane] = solid.law.kind();
-        self.inner.0[lane] = solid.law.inner();
-        self.part.0[lane] = solid.part;
+        Row::set_vector(&mut self.albedo, lane, law.albedo);
+        self.kind.0[lane] = law.kind();
+        self.inner.0[lane] = law.inner();
+        self.names.part.0[lane] = hit.part as u32;
+        self.names.triangle.0[lane] = hit.triangle as u32;
+        self.names.copy.0[lane] = hit.copy.map_or(0, |copy| copy as u32 + 1);
     }
 
     #[inline(always)]
@@ -90,12 +100,13 @@ impl Points {
         Real::load(simd, &self.met).gt(Real::splat(simd, 0.0))
     }
 
-    /// Tells of the lanes that meet a solid which part of the scene it is, and which triangle of all meshes.
+    /// Names what the lanes are at that meet a solid.
     #[inline(always)]
-    pub(super) fn name(&self, part: &mut Row<u32>, triangle: &mut Row<u32>) {
+    pub(super) fn name(&self, names: &mut Names) {
         for lane in (0..WIDEST).filter(|&lane| self.met.0[lane] > 0.0) {
-            part.0[lane] = self.part.0[lane];
-            triangle.0[lane] = self.triangle.0[lane];
+            names.part.0[lane] = self.names.part.0[lane];
+            names.triangle.0[lane] = self.names.triangle.0[lane];
+            names.copy.0[lane] = self.names.copy.0[lane];
         }
     }
 
@@ -161,70 +172,48 @@ impl Rays<'_> {
 }
 
 impl Solids {
-    /// `None` if there are none.
-    pub(super) fn new(
-        first: u32,
-        spheres: Vec<Solid<Sphere>>,
-        soup: Option<&Arc<Soup>>,
-        meshes: Vec<Solid<()>>,
-        smooth: bool,
-    ) -> Option<Self> {
-        (!(spheres.is_empty() && meshes.is_empty())).then(|| Self {
-            spheres,
-            first,
-            soup: soup.map(Arc::clone),
-            meshes,
-            smooth,
-        })
-    }
-
-    /// The laws of all of them.
-    pub(super) fn laws(&self) -> impl Iterator<Item = &Law> {
-        let spheres = self.spheres.iter().map(|solid| &solid.law);
-        spheres.chain(self.meshes.iter().map(|solid| &solid.law))
-    }
-
     /// The solids that rays meet, of which those to the shapes `shapes` are met at the limit; spheres among them.
     #[inline(never)]
-    pub(super) fn nearest(&self, rays: &Rays<'_>, shapes: &Row<u32>) -> Points {
+    pub(super) fn nearest(
+        &self,
+        geometry: &Geometry,
+        rays: &Rays<'_>,
+        shapes: &Row<u32>,
+    ) -> Points {
         let mut points = Points::NONE;
         for (lane, ray, limit) in rays.each() {
-            if let Some(soup) = &self.soup
-                && let Some(Found { shape, distance }) = soup.nearest(&ray, limit)
+            if self.rest
+                && let Some(hit) = geometry.nearest_of_rest(&ray, limit)
             {
-                let mesh = soup.mesh(shape);
-                let surface = soup.surface(shape, &ray, distance);
-                points.set(lane, &self.meshes[mesh], &surface);
-                if self.smooth {
-                    let shading = soup.normal(mesh, shape, &surface);
-                    Row::set_vector(&mut points.shading, lane, shading);
-                }
-                #[expect(clippy::cast_possible_truncation, reason = "fewer than 2^32")]
-                let triangle = shape as u32;
-                points.triangle.0[lane] = triangle;
+                let shading = if self.smooth {
+                    geometry.normal(&hit)
+                } else {
+                    hit.surface.normal
+                };
+                points.set(lane, &self.laws[hit.part], &hit, shading);
             } else if limit < f32::INFINITY
                 && let Some(sphere) = shapes.0[lane].checked_sub(self.first)
             {
-                let solid = &self.spheres[sphere as usize];
-                points.set(lane, solid, &solid.shape.surface(&ray, limit));
+                let (sphere, part) = &self.spheres[sphere as usize];
+                let hit = Hit {
+                    part: *part,
+                    surface: sphere.surface(&ray, limit),
+                    triangle: 0,
+                    copy: None,
+                };
+                points.set(lane, &self.laws[*part], &hit, hit.surface.normal);
             }
         }
         points
     }
-
-    /// Whether rays may meet triangles.
-    #[inline(always)]
-    pub(super) fn soup(&self) -> Option<&Soup> {
-        self.soup.as_deref()
-    }
 }
 
-/// 1 in the lanes whose rays meet no triangle, 0 in all others.
+/// 1 in the lanes whose rays meet nothing but flat shapes and spheres, 0 in all others.
 #[inline(never)]
-pub(super) fn passes(soup: &Soup, rays: &Rays<'_>) -> Row<f32> {
+pub(super) fn passes(geometry: &Geometry, rays: &Rays<'_>) -> Row<f32> {
     let mut passes = Row::<f32>::ZERO;
     for (lane, ray, limit) in rays.each() {
-        if !soup.occluded(&ray, limit) {
+        if !geometry.occluded_by_rest(&ray, limit) {
             passes.0[lane] = 1.0;
         }
     }

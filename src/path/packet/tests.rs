@@ -1,6 +1,6 @@
 //! Packets against single paths.
 
-use glam::{Affine2, DMat3, Vec2, Vec3};
+use glam::{Affine2, Affine3A, DMat3, Mat3A, Vec2, Vec3};
 
 use crate::hash::{hash, unit_f32};
 use crate::path::bsdf::{
@@ -11,9 +11,9 @@ use crate::path::light::{
     AreaLights, Background, Constant, Environment, Light, NoEnvironment, NoLight, Sky, Surroundings,
 };
 use crate::path::sensor::Pinhole;
-use crate::path::shape::{Flat, Mesh, Primitive, Sphere, cuboid};
+use crate::path::shape::{Cylinder, Disk, Flat, Mesh, Primitive, Sphere, cuboid};
 use crate::path::texture::{Checkerboard, Parameter, Texture, Uniform};
-use crate::path::{Object, Paths, Pixel, Scene, View, filter::BoxFilter, scenes};
+use crate::path::{Instances, Object, Paths, Pixel, Scene, View, filter::BoxFilter, scenes};
 use crate::points::{HashedOwen, PointSet, Sobol};
 use crate::{Error, Integrand};
 
@@ -110,6 +110,81 @@ fn packets_give_the_bits_of_single_paths_among_triangles_and_many_lights() {
     let sky = Constant::new([0.2, 0.3, 0.4]).unwrap();
     agree::<_, AreaLights, _>(&room(true, sky).unwrap());
     agree::<_, NoLight, _>(&room(false, sky).unwrap());
+}
+
+/// A ground and a lamp; disks, cylinders and a sphere; and copies, larger, smaller, turned and sheared, of a group of all of them and of a mesh.
+fn copies<B: Bsdf + Clone + From<Lambertian>, E: Environment>(
+    law: &B,
+    environment: E,
+) -> Result<View<B, AreaLights, E, Pinhole>, Error> {
+    let white = B::from(Lambertian::new([0.7, 0.5, 0.9])?);
+    let ground = Flat::parallelogram([-4.0, -0.8, 4.0], [8.0, 0.0, 0.0], [0.0, 0.0, -8.0])?;
+    let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])?;
+    let round = || -> Result<Vec<Primitive>, Error> {
+        Ok(vec![
+            Disk::new([0.0, 0.4, 0.1], [0.5, 0.0, 0.1], [0.0, 0.1, -0.5])?.into(),
+            Cylinder::new([-0.6, -0.6, 0.0], [0.1, 0.8, 0.2], 0.3)?.into(),
+            Cylinder::new([0.7, -0.7, 0.3], [0.6, 0.3, 0.2], 0.2)?
+                .turned()
+                .into(),
+            Sphere::new([0.2, -0.3, -0.6], 0.3)?.into(),
+        ])
+    };
+    let mut random = (0..).map(|state| unit_f32(hash(15, state)));
+    let mut vectors = |size: f32| -> Vec<[f32; 3]> {
+        let mut vector = || [0; 3].map(|_| size * random.next().unwrap() - 0.5 * size);
+        (0..60).map(|_| vector()).collect()
+    };
+    let triangles = (0..58).map(|first| [first, first + 1, first + 2]).collect();
+    let mesh = Mesh::new(vectors(1.2), triangles)?.with_normals(vectors(2.0))?;
+    let places = (0_u8..5).map(|k| {
+        let k = f32::from(k);
+        let turned = Mat3A::from_rotation_y(k) * (0.15 + 0.1 * k);
+        let sheared = Mat3A::from_cols(
+            turned.x_axis,
+            turned.y_axis + 0.2 * turned.x_axis,
+            turned.z_axis,
+        );
+        Affine3A::from_mat3_translation(sheared.into(), Vec3::new(0.9 * k - 2.0, 0.1 * k, k.sin()))
+    });
+    let group = vec![
+        Object::new(round()?, law.clone()),
+        Object::mesh(mesh, white.clone()),
+    ];
+    let objects = vec![
+        Object::new([ground], white.clone()),
+        Object::new([lamp], white).emitting([6.0, 5.0, 4.0])?,
+        Object::new(round()?, law.clone()),
+    ];
+    let copies = Instances {
+        objects: group,
+        places: places.collect(),
+    };
+    Ok(View {
+        scene: Scene::with_instances(objects, vec![copies], environment)?,
+        sensor: Pinhole::look_at([0.1, 1.0, 3.0], [0.0; 3], [0.0, 1.0, 0.0], 60.0, 1.4)?,
+        filter: BoxFilter,
+        paths: Paths::default(),
+    })
+}
+
+#[test]
+fn packets_give_the_bits_of_single_paths_among_other_shapes_and_copies() {
+    let sky = Constant::new([0.2, 0.3, 0.4]).unwrap();
+    let diffuse = Lambertian::new([0.3, 0.9, 0.5]).unwrap();
+    agree(&copies(&diffuse, NoEnvironment).unwrap());
+    agree(&copies(&diffuse.outside(), sky).unwrap());
+    agree(
+        &copies(
+            &Material::<Uniform>::from(Mirror::new([0.9; 3]).unwrap()),
+            sky,
+        )
+        .unwrap(),
+    );
+    let rough = Roughness::new(Distribution::Ggx, Texture::from(Uniform::from(0.3))).unwrap();
+    let [eta, k] = [2.0, 1.5].map(|value| Uniform::from(value).into());
+    let metal = RoughConductor::new(Conductor::new(eta, k).unwrap(), rough);
+    agree(&copies(&Material::<Texture>::from(metal), NoEnvironment).unwrap());
 }
 
 /// A box with a lamp, and in it meshes with and without normals, one of them black inside and turned.

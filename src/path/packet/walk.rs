@@ -9,7 +9,7 @@ use super::drawn::{Hits, Scatters, SkyLight};
 use super::lamp::Lamp;
 use super::math::{around, cosine_hemisphere, power};
 use super::optics::{DELTA, OTHER};
-use super::solids::{Rays, Solids, passes};
+use super::solids::{Rays, passes};
 use super::sweep::Shapes;
 use super::{Packet, Single, Start};
 use crate::Sampler;
@@ -152,7 +152,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
                 limit: &hit.distance.row(),
                 active: &walking.row(simd),
             };
-            solids.nearest(&rays, &hit.shapes())
+            solids.nearest(self.single.geometry(), &rays, &hit.shapes())
         });
         if let Some(solids) = &solids {
             met = met | solids.met(simd);
@@ -304,14 +304,15 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         }
         let mut visible = !between.occluded(lamp.start, lamp.into, lamp.limit, !active);
         let solids = self.packet.solids.as_ref().filter(|_| !PLAIN);
-        if let Some(soup) = solids.and_then(Solids::soup) {
+        if solids.is_some_and(|solids| solids.rest) {
             let rays = Rays {
                 origin: &lamp.start.rows(),
                 direction: &lamp.into.rows(),
                 limit: &lamp.limit.row(),
                 active: &visible.row(simd),
             };
-            visible = Real::load(simd, &passes(soup, &rays)).gt(zero);
+            let passes = passes(self.single.geometry(), &rays);
+            visible = Real::load(simd, &passes).gt(zero);
         }
         let sum = throughput * value * lamp.weight * power(lamp.density, other);
         visible.choose(radiance + sum, radiance)

@@ -101,14 +101,13 @@ impl<B> Parts<B> {
 }
 
 impl<B: Bsdf> Parts<B> {
-    /// Whether the shapes are such that many paths can be followed among them at once: few, flat ones and spheres, and only flat ones
-    /// emit light, the same all over.
+    /// Whether the shapes are such that many paths can be followed among them at once: few, and only flat ones emit light, the same
+    /// all over.
     pub(super) fn are_plain(&self, shapes: &[Primitive]) -> bool {
-        let plain = |shape: &Primitive| matches!(shape, Primitive::Flat(_) | Primitive::Sphere(_));
         let lamp = |emitter: &Emitter| {
             emitter.picture.is_none() && matches!(emitter.shape, Primitive::Flat(_))
         };
-        shapes.len() <= FEW && shapes.iter().all(plain) && self.emitters.iter().all(lamp)
+        shapes.len() <= FEW && self.emitters.iter().all(lamp)
     }
 }
 

@@ -1,8 +1,7 @@
 //! Many paths at once, one in each lane of the vectors that the machine has.
 //!
-//! For scenes of few shapes, and meshes and copies, below a constant sky, a picture of one or none; only flat shapes emit light.
-//! Laws of scattering other than the ideally diffuse one, and what a ray finds of all that is not flat, go lane by lane. Every lane has
-//! the bits of [`Paths::radiance`]: the same arithmetic in the same order, the coordinates read in the same order.
+//! For scenes of few shapes, and meshes and copies. Laws of scattering other than the ideally diffuse one, what a ray finds of all that
+//! is not flat, lights that are not flat or have a picture, and surroundings go lane by lane. Every lane has the bits of [`Paths::radiance`]: the same arithmetic in the same order, the coordinates read in the same order.
 
 mod drawn;
 mod here;
@@ -20,12 +19,12 @@ use glam::{Vec3, Vec3A};
 use super::Paths;
 use super::bsdf::{Scattered, Scattering};
 use super::geometry::{Geometry, Hit};
-use super::light::{AreaLights, Sky};
+use super::light::{AreaLights, Emission, Illumination, Sky};
 use super::render::Start;
 use super::shape::Primitive;
 use crate::Sampler;
 
-pub(in crate::path) use optics::{Emitted, Law, Optics};
+pub(in crate::path) use optics::{Emitted, FlatLight, Law, Optics};
 
 use near::Near;
 use place::{MOST, Table};
@@ -51,6 +50,10 @@ pub(in crate::path) struct Packet {
     one_sided: bool,
     /// Whether any law is another than the ideally diffuse one.
     others: bool,
+    /// Whether the view is asked for all light of shapes, lane by lane.
+    asks_lights: bool,
+    /// Whether it is asked for what is around.
+    asks_around: bool,
     arch: pulp::Arch,
 }
 
@@ -65,6 +68,18 @@ pub(in crate::path) trait Single<U> {
     /// A direction that the law at a point draws.
     fn sample(&self, at: &Hit, out: Vec3A, u: &mut U) -> Option<Scattered>;
 
+    /// Light that a point may get from the lights of the scene.
+    fn lamp(&self, at: &Hit, u: &mut U) -> Option<Illumination>;
+
+    /// Light that it may get from what is around.
+    fn around(&self, at: &Hit, u: &mut U) -> Option<Illumination>;
+
+    /// What a point of a light emits towards another point.
+    fn emitted(&self, at: &Hit, from: Vec3A) -> Emission;
+
+    /// What comes from all around against a direction.
+    fn background(&self, direction: Vec3A) -> Emission;
+
     /// The shapes of the scene.
     fn geometry(&self) -> &Geometry;
 
@@ -73,15 +88,15 @@ pub(in crate::path) trait Single<U> {
 }
 
 impl Packet {
-    /// The scene of the given shapes and lights, if it is one of those, with the same radiance from all around. `optics` tells what each of
-    /// the `parts` does to light, as [`Hit`] numbers them, if that is among what packets know; `smooth`, whether laws heed
-    /// interpolated normals.
+    /// The scene of the given shapes, if it is one of those. `optics` tells what each of the `parts` does to light, as [`Hit`] numbers them;
+    /// `smooth`, whether laws heed interpolated normals. Without `lights`, flat ones, the view is asked for all light of shapes; without
+    /// `around`, the same radiance from everywhere, for what is around, unless that is a sky.
     pub(in crate::path) fn new(
         geometry: &Geometry,
         parts: usize,
-        optics: impl Fn(usize) -> Option<Optics>,
-        lights: &AreaLights,
-        around: Vec3A,
+        optics: impl Fn(usize) -> Optics,
+        lights: Option<&AreaLights>,
+        around: Option<Vec3A>,
         smooth: bool,
     ) -> Option<Self> {
         let (primitives, sweep) = (geometry.shapes(), geometry.sweep()?);
@@ -91,26 +106,23 @@ impl Packet {
         if primitives.len() > MOST {
             return None;
         }
-        let known = (0..parts).map(&optics).collect::<Option<Vec<_>>>()?;
-        let emits = |part: usize| known[part].emitted.is_some();
-        let is_flat = |part: usize| matches!(primitives.get(part), Some(Primitive::Flat(_)));
-        if (0..parts).any(|part| emits(part) && !is_flat(part)) {
-            return None;
-        }
-        let laws: Vec<Law> = known.iter().map(|optics| optics.law).collect();
+        let known: Vec<_> = (0..parts).map(optics).collect();
+        let laws = || known.iter().map(|optics| &optics.law);
         let mut packet = Self {
             table: Table::EMPTY,
             shapes: Shapes::default(),
             dividing: Shapes::default(),
             solids: None,
-            lights: lights.clone(),
+            lights: lights.cloned().unwrap_or(AreaLights::NONE),
             near: None,
             emitters: Vec::new(),
-            around,
+            around: around.unwrap_or(Vec3A::ZERO),
             triangles: false,
             slanted_lights: false,
-            one_sided: laws.iter().any(|law| law.inner() == 0.0),
-            others: laws.iter().any(|law| !law.is_diffuse()),
+            one_sided: laws().any(|law| law.inner() == 0.0),
+            others: laws().any(|law| !law.is_diffuse()),
+            asks_lights: lights.is_none(),
+            asks_around: around.is_none(),
             arch: pulp::Arch::new(),
         };
         let mut emitters = Vec::new();
@@ -126,7 +138,7 @@ impl Packet {
                 packet.dividing.push(number, flat);
             }
             packet.triangles |= flat.slant != 0.0;
-            if let Some(light) = optics.emitted {
+            if let Emitted::Flat(light) = optics.emitted {
                 packet.slanted_lights |= flat.slant != 0.0;
                 emitters.push((light.emitter, number));
             }
@@ -146,13 +158,13 @@ impl Packet {
                 spheres: balls,
                 first,
                 rest: geometry.has_rest(),
-                laws,
+                optics: known,
                 smooth,
             });
         }
         emitters.sort_unstable();
         packet.emitters = emitters.into_iter().map(|(_, shape)| shape).collect();
-        packet.near = Near::new(&packet.emitters, lights);
+        packet.near = Near::new(&packet.emitters, &packet.lights);
         Some(packet)
     }
 
@@ -168,7 +180,8 @@ impl Packet {
         points: &mut [U],
         values: &mut [Vec3],
     ) {
-        let plain = self.solids.is_none() && !self.others && single.sky().is_none();
+        let asks = self.asks_lights || self.asks_around;
+        let plain = self.solids.is_none() && !self.others && !asks && single.sky().is_none();
         if plain {
             self.walk::<U, true>(paths, single, points, values);
         } else {

@@ -13,7 +13,7 @@ use super::filter::{BoxFilter, Filter};
 use super::geometry::{Geometry, Hit};
 use super::image::{Image, Row};
 #[cfg(feature = "simd")]
-use super::light::Sky;
+use super::light::{Emission, Illumination, Sky};
 use super::light::{Environment, Light};
 #[cfg(feature = "simd")]
 use super::packet::{Packet, Single};
@@ -83,6 +83,22 @@ impl<U: Sampler, B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Single
     fn sample(&self, at: &Hit, out: Vec3A, u: &mut U) -> Option<Scattered> {
         let vertex = self.scene.vertex(*at);
         vertex.bsdf.sample(&vertex.surface, out, u)
+    }
+
+    fn lamp(&self, at: &Hit, u: &mut U) -> Option<Illumination> {
+        self.scene.lights().sample(&at.surface, u)
+    }
+
+    fn around(&self, at: &Hit, u: &mut U) -> Option<Illumination> {
+        self.scene.environment().sample(&at.surface, u)
+    }
+
+    fn emitted(&self, at: &Hit, from: Vec3A) -> Emission {
+        self.scene.emitted(at, from)
+    }
+
+    fn background(&self, direction: Vec3A) -> Emission {
+        self.scene.environment().emitted(direction)
     }
 
     fn geometry(&self) -> &Geometry {

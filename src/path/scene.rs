@@ -9,11 +9,13 @@ use std::sync::Arc;
 use glam::Vec3A;
 
 use super::bsdf::{Bsdf, Material};
-use super::geometry::{Copied, Geometry, Hit};
+use super::geometry::{Copied, FEW, Geometry, Hit};
+#[cfg(feature = "simd")]
+use super::light::Emission;
 use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment};
 use super::object::{Instances, Object, Radiance};
 #[cfg(feature = "simd")]
-use super::packet::{Emitted, Law, Optics, Packet};
+use super::packet::{Emitted, FlatLight, Law, Optics, Packet};
 use super::ray::{Ray, Surface};
 use super::resolution::{check_object, check_scene};
 use super::segment::{End, Segment};
@@ -125,16 +127,14 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
                 copies.push(copy);
             }
         }
-        let at_once = parts.are_plain(&shapes)
-            && !meshes_shine
-            && (environment.constant().is_some() || environment.as_sky().is_some());
+        let few = shapes.len() <= FEW;
+        let flat = few && parts.lights_are_flat() && !meshes_shine;
         let geometry = Geometry::new(shapes, meshes, copies);
         check_scene(geometry.bounds())?;
         let mut emitters = parts.emitters;
         // Where many paths go at once, drawing from the area is much the faster way.
-        let from_area = at_once
-            && L::new(emitters.clone())?.as_area_lights().is_some()
-            && !nearby::are_lit(&geometry, &emitters);
+        let flat = flat && L::new(emitters.clone())?.as_area_lights().is_some();
+        let from_area = flat && !nearby::are_lit(&geometry, &emitters);
         if !from_area {
             emitters.iter_mut().for_each(Emitter::by_solid_angle);
         }
@@ -152,45 +152,48 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
             packet: None,
         };
         #[cfg(feature = "simd")]
-        if at_once {
-            scene.packet = scene.packed().map(Box::new);
+        if few {
+            scene.packet = scene.packed(flat).map(Box::new);
         }
         Ok(scene)
     }
 
-    /// The scene for many paths at once, if it is one of those.
+    /// The scene for many paths at once, if it is one of those; `flat` if only flat shapes emit light, the same all over.
     #[cfg(feature = "simd")]
-    fn packed(&self) -> Option<Packet> {
+    fn packed(&self, flat: bool) -> Option<Packet> {
         let around = match self.environment.as_sky() {
-            Some(_) => Vec3A::ZERO,
-            None => self.environment.constant()?,
+            Some(_) => Some(Vec3A::ZERO),
+            None => self.environment.constant(),
         };
-        let lights = self.lights.as_area_lights()?;
-        let optics = |shape: usize| {
-            let owner = self.owners[shape];
-            let emitted = if owner.emitter == DARK {
-                None
-            } else {
-                Some(Emitted {
-                    emitter: owner.emitter,
-                    radiance: lights.radiance(owner.emitter)?,
-                    probability: lights.probability(owner.emitter),
-                })
+        let lights = self.lights.as_area_lights().filter(|_| flat);
+        let optics = |part: usize| {
+            let owner = self.owners[part];
+            let emitted = match (owner.emitter, lights) {
+                (DARK, _) => Emitted::Nothing,
+                (emitter, Some(lights)) => Emitted::Flat(FlatLight {
+                    emitter,
+                    radiance: lights.radiance(emitter),
+                    probability: lights.probability(emitter),
+                }),
+                (_, None) => Emitted::Asked,
             };
-            Some(Optics {
+            Optics {
                 law: Law::of(&self.bsdfs[owner.bsdf as usize]),
                 emitted,
-            })
+            }
         };
         let smooth = !B::Detail::is_nothing();
-        Packet::new(
-            &self.geometry,
-            self.owners.len(),
-            optics,
-            lights,
-            around,
-            smooth,
-        )
+        let parts = self.owners.len();
+        Packet::new(&self.geometry, parts, optics, lights, around, smooth)
+    }
+
+    /// What a point of a light emits towards another point.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn emitted(&self, at: &Hit, from: Vec3A) -> Emission {
+        match self.owners[at.part].emitter(at.triangle) {
+            Some(emitter) => self.lights.emitted(emitter, from, &at.surface),
+            None => Emission::NONE,
+        }
     }
 }
 

@@ -39,7 +39,7 @@ impl Choice {
 
 impl AreaLights {
     /// No lights.
-    pub(super) const NONE: Self = Self {
+    pub(in crate::path) const NONE: Self = Self {
         emitters: Vec::new(),
         choices: Vec::new(),
     };
@@ -50,11 +50,10 @@ impl AreaLights {
         self.choices[emitter as usize].times(1.0)
     }
 
-    /// What an emitter emits, if it is the same everywhere.
+    /// What an emitter emits; of a picture the mean.
     #[cfg(feature = "simd")]
-    pub(in crate::path) fn radiance(&self, emitter: u32) -> Option<Vec3A> {
-        let emitter = &self.emitters[emitter as usize];
-        emitter.picture.is_none().then_some(emitter.radiance)
+    pub(in crate::path) fn radiance(&self, emitter: u32) -> Vec3A {
+        self.emitters[emitter as usize].radiance
     }
 
     /// The shapes of the emitters.

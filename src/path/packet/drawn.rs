@@ -11,7 +11,7 @@ use crate::path::Surface;
 use crate::path::bsdf::Scattered;
 use crate::path::geometry::Hit;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
-use crate::path::light::{Emission, Sky};
+use crate::path::light::{Emission, Illumination, Sky};
 
 /// Weights and densities, and the directions they belong to where those were drawn.
 pub(super) struct Weights {
@@ -31,6 +31,21 @@ impl Weights {
     fn set(&mut self, lane: usize, weight: Vec3A, density: f32) {
         Row::set_vector(&mut self.weight, lane, weight);
         self.density.0[lane] = density;
+    }
+
+    /// What comes from all around against the directions of the active lanes.
+    #[inline(never)]
+    pub(super) fn background<U>(
+        single: &dyn Single<U>,
+        directions: &[Row<f32>; 3],
+        active: &Row<f32>,
+    ) -> Self {
+        let mut weights = Self::NONE;
+        for lane in (0..WIDEST).filter(|&lane| active.0[lane] > 0.0) {
+            let emission = single.background(Row::vector(directions, lane));
+            weights.set(lane, emission.radiance, emission.density);
+        }
+        weights
     }
 
     #[inline(always)]
@@ -100,6 +115,51 @@ impl SkyLight {
     }
 }
 
+/// Light that points may get, which the view was asked for.
+pub(super) struct Illuminated {
+    start: [Row<f32>; 3],
+    limit: Row<f32>,
+    /// The way to it.
+    light: Weights,
+}
+
+impl Illuminated {
+    pub(super) const NONE: Self = Self {
+        start: [Row::<f32>::ZERO; 3],
+        limit: Row::<f32>::ZERO,
+        light: Weights::NONE,
+    };
+
+    #[inline(always)]
+    pub(super) fn set(&mut self, lane: usize, light: Option<Illumination>) {
+        if let Some(Illumination {
+            way,
+            weight,
+            density,
+        }) = light
+        {
+            Row::set_vector(&mut self.start, lane, way.ray.origin);
+            self.limit.0[lane] = way.length;
+            Row::set_vector(&mut self.light.direction, lane, way.ray.direction);
+            self.light.set(lane, weight, density);
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn lamp<S: Simd>(&self, simd: S, active: Mask<S>) -> Lamp<S> {
+        let density = self.light.density(simd);
+        let active = active & density.gt(Real::splat(simd, 0.0));
+        Lamp {
+            start: Vector::load(simd, &self.start),
+            into: self.light.direction(simd),
+            limit: Real::load(simd, &self.limit),
+            weight: self.light.weight(simd),
+            density: active.select(density, Real::splat(simd, 1.0)),
+            active,
+        }
+    }
+}
+
 /// What laws of scattering draw that are not ideally diffuse.
 pub(super) struct Scatters {
     pub(super) drawn: Weights,
@@ -135,6 +195,18 @@ impl Scatters {
     }
 }
 
+/// What paths draw at their points.
+pub(super) struct Draws {
+    /// The shapes that are chosen among flat lights.
+    pub(super) chosen: Row<u32>,
+    /// Light of the shapes and of what is around, where the view is asked for it.
+    pub(super) lamp: Option<Illuminated>,
+    pub(super) around: Option<Illuminated>,
+    pub(super) sky: Option<SkyLight>,
+    /// Where laws are not ideally diffuse.
+    pub(super) scattered: Option<Scatters>,
+}
+
 /// The points that paths are at, to be asked lane by lane.
 pub(super) struct Hits<'a> {
     pub(super) point: [Row<f32>; 3],
@@ -164,6 +236,22 @@ impl Hits<'_> {
     #[inline(always)]
     pub(super) fn out(&self, lane: usize) -> Vec3A {
         -Row::vector(self.direction, lane)
+    }
+
+    /// What the lights at the active lanes emit towards `origin`.
+    #[inline(never)]
+    pub(super) fn emitted<U>(
+        &self,
+        single: &dyn Single<U>,
+        origin: &[Row<f32>; 3],
+        active: &Row<f32>,
+    ) -> Weights {
+        let mut weights = Weights::NONE;
+        for lane in (0..WIDEST).filter(|&lane| active.0[lane] > 0.0) {
+            let emission = single.emitted(&self.hit(lane), Row::vector(origin, lane));
+            weights.set(lane, emission.radiance, emission.density);
+        }
+        weights
     }
 
     /// What the laws of the active lanes do for light from some directions.

@@ -4,7 +4,7 @@ use pulp::Simd;
 
 use super::Packet;
 use super::drawn::Hits;
-use super::place::{DARK, Place, Table};
+use super::place::{Place, Table};
 use super::solids::{Names, Points};
 use super::sweep::Hit;
 use crate::path::lanes::{Mask, Real, Row, Vector};
@@ -56,7 +56,7 @@ impl Packet {
             here.point = met.choose(points.point(simd), here.point);
             place.normal = met.choose(points.normal(simd), place.normal);
             place.margin = met.select(points.margin(simd), place.margin);
-            place.chance = met.select(Real::splat(simd, DARK), place.chance);
+            place.chance = met.select(points.chance(simd), place.chance);
             here.shading = met.choose(points.shading(simd), place.normal);
         }
         here
@@ -64,12 +64,18 @@ impl Packet {
 }
 
 impl<S: Simd> Here<'_, S> {
-    /// Where light is emitted towards `origin`.
+    /// Where light is emitted.
     #[inline(always)]
-    pub(super) fn shines(&self, origin: Vector<S>) -> Mask<S> {
-        let zero = origin.x.all(0.0);
+    pub(super) fn shines(&self) -> Mask<S> {
+        let chance = self.place.chance;
+        chance.ge(chance.all(0.0))
+    }
+
+    /// Where the outer side is towards `origin`.
+    #[inline(always)]
+    pub(super) fn faces(&self, origin: Vector<S>) -> Mask<S> {
         let facing = self.place.normal.dot(origin - self.point);
-        self.place.chance.ge(zero) & facing.gt(zero)
+        facing.gt(facing.all(0.0))
     }
 
     /// 1 where the inner side scatters as the outer one does, 0 where it is black.

@@ -8,12 +8,36 @@ use crate::path::bsdf::{Bsdf, Lambertian};
 #[derive(Clone, Copy, Debug)]
 pub(in crate::path) struct Optics {
     pub(in crate::path) law: Law,
-    pub(in crate::path) emitted: Option<Emitted>,
+    pub(in crate::path) emitted: Emitted,
 }
 
-/// What the outer side of a shape emits.
+/// What it emits.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::path) struct Emitted {
+pub(in crate::path) enum Emitted {
+    Nothing,
+    /// As a flat shape whose light is the same all over.
+    Flat(FlatLight),
+    /// Light that the view is asked for.
+    Asked,
+}
+
+impl Emitted {
+    /// Of a flat light the probability with which it is chosen; [`DARK`] if nothing is emitted, which is negative.
+    pub(super) fn chance(&self) -> f32 {
+        match self {
+            Self::Nothing => DARK,
+            Self::Flat(light) => light.probability,
+            Self::Asked => 0.0,
+        }
+    }
+}
+
+/// The `chance` of what emits nothing.
+pub(super) const DARK: f32 = -1.0;
+
+/// What the outer side of a flat shape emits.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::path) struct FlatLight {
     pub(in crate::path) emitter: u32,
     pub(in crate::path) radiance: Vec3A,
     /// The probability with which it is chosen among the lights.

@@ -3,7 +3,7 @@
 use glam::Vec3A;
 use pulp::Simd;
 
-use super::optics::Optics;
+use super::optics::{DARK, Emitted, Optics};
 use crate::path::lanes::{Real, Row, Vector, WIDEST};
 use crate::path::shape::Flat;
 
@@ -53,9 +53,9 @@ impl Table {
 
     /// A flat shape, which is the part `part` of the scene.
     pub(super) fn set(&mut self, shape: usize, part: u32, flat: &Flat, optics: &Optics) {
-        let (radiance, chance) = match optics.emitted {
-            Some(light) => (light.radiance, light.probability),
-            None => (Vec3A::ZERO, DARK),
+        let radiance = match optics.emitted {
+            Emitted::Flat(light) => light.radiance,
+            Emitted::Nothing | Emitted::Asked => Vec3A::ZERO,
         };
         for axis in 0..3 {
             self.corner[axis][shape] = flat.corner[axis];
@@ -70,7 +70,7 @@ impl Table {
         self.slant[shape] = flat.slant;
         self.margin[shape] = flat.margin;
         self.area[shape] = flat.area;
-        self.chance[shape] = chance;
+        self.chance[shape] = optics.emitted.chance();
         self.kind[shape] = optics.law.kind();
         self.inner[shape] = optics.law.inner();
         self.part[shape] = part;
@@ -189,9 +189,6 @@ impl Table {
         ]
     }
 }
-
-/// The `chance` of a shape that emits nothing.
-pub(super) const DARK: f32 = -1.0;
 
 /// A [`Place`] lane by lane.
 struct Rows {

@@ -3,13 +3,13 @@
 use glam::Vec3A;
 use pulp::Simd;
 
-use super::optics::Law;
+use super::optics::Optics;
 use crate::path::Ray;
 use crate::path::geometry::{Geometry, Hit};
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
 use crate::path::shape::{Shape, Sphere};
 
-/// What is not flat in a scene: spheres, and the rest that the [`Geometry`] finds. It emits no light.
+/// What is not flat in a scene: spheres, and the rest that the [`Geometry`] finds.
 #[derive(Debug)]
 pub(super) struct Solids {
     /// The spheres, and which parts of the scene they are.
@@ -18,9 +18,9 @@ pub(super) struct Solids {
     pub(super) first: u32,
     /// Whether there is anything else.
     pub(super) rest: bool,
-    /// The laws of all parts.
-    pub(super) laws: Vec<Law>,
-    /// Whether they heed interpolated normals.
+    /// What all parts do to light.
+    pub(super) optics: Vec<Optics>,
+    /// Whether laws heed interpolated normals.
     pub(super) smooth: bool,
 }
 
@@ -35,6 +35,7 @@ pub(super) struct Points {
     albedo: [Row<f32>; 3],
     kind: Row<f32>,
     inner: Row<f32>,
+    chance: Row<f32>,
     names: Names,
 }
 
@@ -68,6 +69,7 @@ impl Points {
         albedo: [Row::<f32>::ZERO; 3],
         kind: Row::<f32>::ZERO,
         inner: Row::<f32>::ZERO,
+        chance: Row::<f32>::ZERO,
         names: Names {
             part: Row::<u32>::ZERO,
             triangle: Row::<u32>::ZERO,
@@ -80,8 +82,8 @@ impl Points {
         clippy::cast_possible_truncation,
         reason = "scenes have fewer than 2^32 parts, triangles and copies"
     )]
-    fn set(&mut self, lane: usize, law: &Law, hit: &Hit, shading: Vec3A) {
-        let surface = &hit.surface;
+    fn set(&mut self, lane: usize, optics: &Optics, hit: &Hit, shading: Vec3A) {
+        let (surface, law) = (&hit.surface, &optics.law);
         self.met.0[lane] = 1.0;
         Row::set_vector(&mut self.point, lane, surface.point);
         Row::set_vector(&mut self.normal, lane, surface.normal);
@@ -90,6 +92,7 @@ impl Points {
         Row::set_vector(&mut self.albedo, lane, law.albedo);
         self.kind.0[lane] = law.kind();
         self.inner.0[lane] = law.inner();
+        self.chance.0[lane] = optics.emitted.chance();
         self.names.part.0[lane] = hit.part as u32;
         self.names.triangle.0[lane] = hit.triangle as u32;
         self.names.copy.0[lane] = hit.copy.map_or(0, |copy| copy as u32 + 1);
@@ -141,6 +144,12 @@ impl Points {
         Real::load(simd, &self.kind)
     }
 
+    /// Negative where nothing is emitted.
+    #[inline(always)]
+    pub(super) fn chance<S: Simd>(&self, simd: S) -> Real<S> {
+        Real::load(simd, &self.chance)
+    }
+
     #[inline(always)]
     pub(super) fn inner<S: Simd>(&self, simd: S) -> Real<S> {
         Real::load(simd, &self.inner)
@@ -190,7 +199,7 @@ impl Solids {
                 } else {
                     hit.surface.normal
                 };
-                points.set(lane, &self.laws[hit.part], &hit, shading);
+                points.set(lane, &self.optics[hit.part], &hit, shading);
             } else if limit < f32::INFINITY
                 && let Some(sphere) = shapes.0[lane].checked_sub(self.first)
             {
@@ -201,7 +210,7 @@ impl Solids {
                     triangle: 0,
                     copy: None,
                 };
-                points.set(lane, &self.laws[*part], &hit, hit.surface.normal);
+                points.set(lane, &self.optics[*part], &hit, hit.surface.normal);
             }
         }
         points

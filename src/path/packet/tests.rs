@@ -8,7 +8,8 @@ use crate::path::bsdf::{
     Plastic, RoughConductor, Roughness, Tint,
 };
 use crate::path::light::{
-    AreaLights, Background, Constant, Environment, Light, NoEnvironment, NoLight, Sky, Surroundings,
+    AreaLights, Background, Constant, DirectionalLight, Environment, Light, LightTree,
+    NoEnvironment, NoLight, PointLight, Sky, Source, Surroundings,
 };
 use crate::path::sensor::Pinhole;
 use crate::path::shape::{Cylinder, Disk, Flat, Mesh, Primitive, Sphere, cuboid};
@@ -366,7 +367,7 @@ fn packets_give_the_bits_of_single_paths_among_spheres_or_meshes_alone() {
 }
 
 #[test]
-fn lights_of_scenes_without_packets_are_drawn_by_solid_angle() {
+fn lights_that_are_asked_for_are_drawn_by_solid_angle() {
     let law = || Lambertian::new([0.5; 3]).unwrap();
     let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let triangles = (0..60).map(|k| [k % 4, (k + 1) % 4, (k + 2) % 4]).collect();
@@ -375,15 +376,83 @@ fn lights_of_scenes_without_packets_are_drawn_by_solid_angle() {
         .emitting([1.0; 3])
         .unwrap();
     let scene: Scene<_, AreaLights, _> = Scene::new(vec![shining], NoEnvironment).unwrap();
-    assert!(scene.packet().is_none());
     assert!(scene.lights().shapes().all(|shape| match shape {
         Primitive::Flat(flat) => flat.is_by_solid_angle(),
         _ => false,
     }));
 }
 
+/// Spheres, a disk, a mesh and a picture that shine, next to a lamp.
+fn lights<L: Light, E: Environment>(
+    environment: E,
+) -> Result<View<Material<Uniform>, L, E, Pinhole>, Error> {
+    let white = Lambertian::new([0.7, 0.5, 0.9])?;
+    let mirror = Mirror::new([0.9; 3])?;
+    let ground = Flat::parallelogram([-4.0, -0.8, 4.0], [8.0, 0.0, 0.0], [0.0, 0.0, -8.0])?;
+    let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])?;
+    let screen = Flat::parallelogram([-2.0, -0.5, -1.0], [1.5, 0.0, -1.0], [0.0, 1.5, 0.0])?;
+    let mut random = (0..).map(|state| unit_f32(hash(16, state)));
+    let mut vector = || [0; 3].map(|_| 1.4 * random.next().unwrap() - 0.7);
+    let corners = (0..58).map(|first| [first, first + 1, first + 2]).collect();
+    let mesh = Mesh::new((0..60).map(|_| vector()).collect(), corners)?;
+    let disk = Disk::new([1.5, 0.4, 0.1], [0.5, 0.0, 0.1], [0.0, 0.1, -0.5])?;
+    let sphere = |x| Sphere::new([x, -0.3, 0.6], 0.3);
+    let picture = Checkerboard::new(
+        [0.9, 0.1].map(|color| Uniform::from(color).into()),
+        Affine2::from_scale(Vec2::splat(8.0)),
+    );
+    let objects = vec![
+        Object::new([ground], white),
+        Object::new([lamp], white).emitting([6.0, 5.0, 4.0])?,
+        Object::new([sphere(0.4)?], white).emitting([1.0, 2.0, 3.0])?,
+        Object::new([sphere(1.3)?.turned()], mirror).emitting([0.5; 3])?,
+        Object::new([sphere(-0.5)?], mirror),
+        Object::new([disk], white.outside()).emitting([2.0; 3])?,
+        Object::new([screen], white).emitting_picture(picture.into())?,
+        Object::mesh(mesh, white).emitting([0.2, 0.1, 0.3])?,
+    ];
+    Ok(View {
+        scene: Scene::new(objects, environment)?,
+        sensor: Pinhole::look_at([0.1, 1.0, 3.0], [0.0; 3], [0.0, 1.0, 0.0], 60.0, 1.4)?,
+        filter: BoxFilter,
+        paths: Paths::default(),
+    })
+}
+
 #[test]
-fn other_scenes_have_no_packets() {
-    let dark = room::<AreaLights, _>(false, NoEnvironment).unwrap();
-    assert!(dark.scene.packet().is_none());
+fn packets_give_the_bits_of_single_paths_among_lights_of_any_kind() {
+    let sky = Constant::new([0.2, 0.3, 0.4]).unwrap();
+    agree::<_, AreaLights, _>(&lights(NoEnvironment).unwrap());
+    agree::<_, AreaLights, _>(&lights(sky).unwrap());
+    agree::<_, LightTree, _>(&lights(sky).unwrap());
+    // Coordinates are drawn for lights that are not there.
+    agree::<_, AreaLights, _>(&room(false, NoEnvironment).unwrap());
+    agree::<_, LightTree, _>(&room(true, NoEnvironment).unwrap());
+}
+
+#[test]
+fn packets_give_the_bits_of_single_paths_among_sources_without_size() {
+    let around = |background| {
+        let bulb = PointLight::new([0.6, 0.9, 0.7], [3.0, 2.0, 1.0]).unwrap();
+        let sun = DirectionalLight::new([0.3, -1.0, 0.2], [1.0, 0.9, 0.8]).unwrap();
+        Surroundings::new(
+            vec![Source::Point(bulb), Source::Directional(sun)],
+            background,
+        )
+        .unwrap()
+    };
+    let grey = Uniform::from(0.4);
+    let sky = Constant::new([0.2, 0.3, 0.4]).unwrap();
+    agree(&balls::<_, AreaLights, _>(true, grey, around(Background::None)).unwrap());
+    agree(&balls::<_, NoLight, _>(false, grey, around(Background::Constant(sky))).unwrap());
+    agree::<_, AreaLights, _>(&room(true, around(Background::Constant(sky))).unwrap());
+    agree::<_, AreaLights, _>(&lights(around(Background::None)).unwrap());
+}
+
+#[test]
+fn scenes_of_many_shapes_have_no_packets() {
+    let balls = (0_u8..50).map(|k| Sphere::new([f32::from(k), 0.0, 0.0], 0.4).unwrap());
+    let object = Object::<Lambertian>::new(balls, Lambertian::new([0.5; 3]).unwrap());
+    let scene: Scene<_, NoLight, _> = Scene::new(vec![object], NoEnvironment).unwrap();
+    assert!(scene.packet().is_none());
 }

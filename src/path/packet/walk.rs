@@ -5,7 +5,7 @@ use core::f32::consts::FRAC_1_PI;
 use glam::{Vec3, Vec3A};
 use pulp::{Simd, WithSimd};
 
-use super::drawn::{Hits, Scatters, SkyLight};
+use super::drawn::{Draws, Hits, Illuminated, Scatters, SkyLight, Weights};
 use super::lamp::Lamp;
 use super::math::{around, cosine_hemisphere, power};
 use super::optics::{DELTA, OTHER};
@@ -132,6 +132,8 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
     fn step<S: Simd>(&mut self, simd: S, state: &mut State) {
         let packet = self.packet;
         let others = !PLAIN && packet.others;
+        let (asks_lights, asks_around) =
+            (!PLAIN && packet.asks_lights, !PLAIN && packet.asks_around);
         let sky = self.sky.filter(|_| !PLAIN);
         let (zero, one) = (Real::splat(simd, 0.0), Real::splat(simd, 1.0));
         let origin = Vector::load(simd, &state.origin);
@@ -158,14 +160,18 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             met = met | solids.met(simd);
         }
         let missed = walking & !met;
-        if let Some(sky) = sky {
+        if sky.is_some() || asks_around {
             if missed.any() {
-                let light = SkyLight::emitted(sky, &state.direction, &missed.row(simd));
-                let other = light.0.density(simd);
-                let sum = radiance + throughput * light.0.weight(simd) * power(density, other);
+                let (directions, lanes) = (&state.direction, &missed.row(simd));
+                let light = match sky {
+                    Some(sky) => SkyLight::emitted(sky, directions, lanes).0,
+                    None => Weights::background(self.single, directions, lanes),
+                };
+                let other = light.density(simd);
+                let sum = radiance + throughput * light.weight(simd) * power(density, other);
                 radiance = missed.choose(sum, radiance);
             }
-        } else if others {
+        } else if others || asks_lights {
             // As the loop over single paths has it, whatever the densities of a law are.
             let around = Vector::splat(simd, packet.around);
             let sum = radiance + throughput * around * power(density, zero);
@@ -176,10 +182,21 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         }
 
         let here = packet.here(simd, &hit, solids.as_ref());
+        let asked = others || asks_lights || asks_around;
+        let hits = asked.then(|| here.hits(&packet.table, &state.direction));
         // Emitted light, met by a direction that was drawn at the surface before.
-        let lit = met & here.shines(origin);
+        let mut lit = met & here.shines();
+        if !asks_lights {
+            lit = lit & here.faces(origin);
+        }
         if lit.any() {
-            let (emitted, other) = packet.emitted(simd, &here, origin, lit);
+            let (emitted, other) = match &hits {
+                Some(hits) if asks_lights => {
+                    let light = hits.emitted(self.single, &state.origin, &lit.row(simd));
+                    (light.weight(simd), light.density(simd))
+                }
+                _ => packet.emitted(simd, &here, origin, lit),
+            };
             let sum = radiance + throughput * emitted * power(density, other);
             radiance = lit.choose(sum, radiance);
         }
@@ -193,7 +210,6 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             zero.store(&mut state.segment);
             return;
         }
-        let hits = others.then(|| here.hits(&packet.table, &state.direction));
         let kind = if others {
             here.kind(simd, &packet.table)
         } else {
@@ -207,14 +223,17 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             hits: hits.as_ref(),
         };
 
-        let mut chosen = packet.first_light();
-        let mut light = None;
-        let mut scattered = others.then_some(Scatters::NONE);
-        let [a, b, c, d] = if others || sky.is_some() {
-            let drawn = (&mut chosen, &mut light, scattered.as_mut());
-            self.draw(simd, state, (walking, &kind.row()), at.hits, drawn)
+        let mut draws = Draws {
+            chosen: packet.first_light(),
+            lamp: asks_lights.then_some(Illuminated::NONE),
+            around: asks_around.then_some(Illuminated::NONE),
+            sky: None,
+            scattered: others.then_some(Scatters::NONE),
+        };
+        let [a, b, c, d] = if asked || sky.is_some() {
+            self.draw(simd, state, (walking, &kind.row()), at.hits, &mut draws)
         } else {
-            self.draw_diffuse(simd, state, walking, &mut chosen)
+            self.draw_diffuse(simd, state, walking, &mut draws.chosen)
         };
 
         // Next-event estimation: light met by drawing a point of the lights, and one of the sky.
@@ -223,12 +242,19 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             seeing = seeing & kind.lt(Real::splat(simd, DELTA));
         }
         if !packet.emitters.is_empty() {
-            let lamp = packet.lamp(simd, &here, &chosen, [a, b], seeing);
+            let lamp = packet.lamp(simd, &here, &draws.chosen, [a, b], seeing);
             radiance = self.lit(simd, &at, &lamp, &packet.dividing, (throughput, radiance));
         }
-        if let Some(light) = &light {
-            let lamp = light.lamp(simd, &here, seeing);
-            radiance = self.lit(simd, &at, &lamp, &packet.shapes, (throughput, radiance));
+        if !PLAIN {
+            if let Some(light) = &draws.lamp {
+                let lamp = light.lamp(simd, seeing);
+                radiance = self.lit(simd, &at, &lamp, &packet.dividing, (throughput, radiance));
+            }
+            let around = draws.around.as_ref().map(|light| light.lamp(simd, seeing));
+            let sky = draws.sky.as_ref();
+            if let Some(lamp) = around.or_else(|| Some(sky?.lamp(simd, &here, seeing))) {
+                radiance = self.lit(simd, &at, &lamp, &packet.shapes, (throughput, radiance));
+            }
         }
 
         // All other light, by drawing a direction.
@@ -242,7 +268,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         } else {
             one
         };
-        if let Some(scattered) = &scattered {
+        if let Some(scattered) = &draws.scattered {
             let other = at.other;
             goes_on = (other & scattered.goes_on(simd)) | (!other & goes_on);
             weight = other.choose(scattered.drawn.weight(simd), weight);
@@ -328,11 +354,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         state: &State,
         (walking, kinds): (Mask<S>, &Row<f32>),
         hits: Option<&Hits<'_>>,
-        (chosen, light, mut scattered): (
-            &mut Row<u32>,
-            &mut Option<SkyLight>,
-            Option<&mut Scatters>,
-        ),
+        draws: &mut Draws,
     ) -> [Real<S>; 4] {
         let lit = !self.packet.emitters.is_empty();
         let walks = walking.row(simd);
@@ -344,8 +366,18 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             if lit && kind != DELTA {
                 let [a, b] = sampler.next_2d();
                 let (shape, a) = self.packet.choose(a);
-                chosen.0[lane] = shape;
+                draws.chosen.0[lane] = shape;
                 (u[0].0[lane], u[1].0[lane]) = (single(a), single(b));
+            }
+            if let (Some(hits), Some(lamp)) = (hits, &mut draws.lamp)
+                && kind != DELTA
+            {
+                lamp.set(lane, self.single.lamp(&hits.hit(lane), sampler));
+            }
+            if let (Some(hits), Some(around)) = (hits, &mut draws.around)
+                && kind != DELTA
+            {
+                around.set(lane, self.single.around(&hits.hit(lane), sampler));
             }
             if self.sky.is_some() && kind != DELTA {
                 (lanes[count], coordinates[count]) = (lane, sampler.next_2d());
@@ -354,13 +386,13 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             if kind == 0.0 {
                 let [c, d] = sampler.next_2d();
                 (u[2].0[lane], u[3].0[lane]) = (single(c), single(d));
-            } else if let (Some(hits), Some(scattered)) = (hits, &mut scattered) {
+            } else if let (Some(hits), Some(scattered)) = (hits, &mut draws.scattered) {
                 let (hit, out) = (hits.hit(lane), hits.out(lane));
                 scattered.set(lane, self.single.sample(&hit, out, sampler));
             }
         }
         if let Some(sky) = self.sky {
-            *light = Some(SkyLight::drawn(sky, &lanes[..count], &coordinates));
+            draws.sky = Some(SkyLight::drawn(sky, &lanes[..count], &coordinates));
         }
         u.map(|row| Real::load(simd, &row))
     }

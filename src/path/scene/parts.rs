@@ -3,7 +3,6 @@
 use glam::Affine2;
 
 use crate::Error;
-use crate::path::bsdf::Bsdf;
 use crate::path::geometry::FEW;
 use crate::path::light::Emitter;
 use crate::path::object::{Object, Radiance};
@@ -100,14 +99,13 @@ impl<B> Parts<B> {
     }
 }
 
-impl<B: Bsdf> Parts<B> {
-    /// Whether the shapes are such that many paths can be followed among them at once: few, and only flat ones emit light, the same
-    /// all over.
-    pub(super) fn are_plain(&self, shapes: &[Primitive]) -> bool {
+impl<B> Parts<B> {
+    /// Whether only what is flat emits light, the same all over.
+    pub(super) fn lights_are_flat(&self) -> bool {
         let lamp = |emitter: &Emitter| {
             emitter.picture.is_none() && matches!(emitter.shape, Primitive::Flat(_))
         };
-        shapes.len() <= FEW && self.emitters.iter().all(lamp)
+        self.emitters.iter().all(lamp)
     }
 }
 

@@ -22,9 +22,6 @@ use copies::Copies;
 #[cfg(feature = "simd")]
 pub(in crate::path) use kind::{Kind, axis};
 use soup::Soup;
-#[cfg(feature = "simd")]
-pub(in crate::path) use sweep::Sweep;
-#[cfg(not(feature = "simd"))]
 use sweep::Sweep;
 use tree::Tree;
 
@@ -191,7 +188,7 @@ impl Geometry {
     /// Whether there is anything but few flat shapes and spheres: the *rest*.
     #[cfg(feature = "simd")]
     pub(in crate::path) fn has_rest(&self) -> bool {
-        let few = self.sweep().is_some_and(|sweep| sweep.others.is_empty());
+        let few = self.sweep().is_some_and(|sweep| sweep.round.is_empty());
         !few || self.soup.is_some() || self.copies.is_some()
     }
 
@@ -201,20 +198,18 @@ impl Geometry {
     pub(in crate::path) fn nearest_of_rest(&self, ray: &Ray, limit: f32) -> Option<Hit> {
         let other = self
             .sweep()
-            .and_then(|sweep| sweep.nearest_other(ray, limit));
+            .and_then(|sweep| sweep.nearest_round(ray, limit));
         let limit = other.map_or(limit, |found| found.distance);
-        match (self.nearest_beside(ray, limit), other) {
-            (Some((hit, _)), _) => Some(hit),
-            (None, other) => other.map(|Found { shape, distance }| self.hit(ray, shape, distance)),
-        }
+        let hit = self.nearest_beside(ray, limit).map(|(hit, _)| hit);
+        hit.or_else(|| other.map(|Found { shape, distance }| self.hit(ray, shape, distance)))
     }
 
     /// Whether the ray meets any of the rest nearer than `limit`.
     #[cfg(feature = "simd")]
     #[inline]
     pub(in crate::path) fn occluded_by_rest(&self, ray: &Ray, limit: f32) -> bool {
-        let other = |sweep: &Sweep| sweep.occluded_by_other(ray, limit);
-        self.sweep().is_some_and(other) || self.occluded_by_others(ray, limit)
+        let other = |sweep: &Sweep| sweep.occluded_by_round(ray, limit);
+        self.sweep().is_some_and(other) || self.occluded_beside(ray, limit)
     }
 
     /// The normal that light is scattered by, for laws that heed interpolated ones.
@@ -236,7 +231,7 @@ impl Geometry {
             Search::Sweep(sweep) => sweep.divided(ray, limit),
             Search::Tree(tree) => tree.occluded(&self.shapes, ray, limit),
         };
-        shapes || self.occluded_by_others(ray, limit)
+        shapes || self.occluded_beside(ray, limit)
     }
 
     /// Whether the ray meets any shape nearer than `limit`.
@@ -246,11 +241,11 @@ impl Geometry {
             Search::Sweep(sweep) => sweep.occluded(ray, limit),
             Search::Tree(tree) => tree.occluded(&self.shapes, ray, limit),
         };
-        shapes || self.occluded_by_others(ray, limit)
+        shapes || self.occluded_beside(ray, limit)
     }
 
     #[inline]
-    fn occluded_by_others(&self, ray: &Ray, limit: f32) -> bool {
+    fn occluded_beside(&self, ray: &Ray, limit: f32) -> bool {
         let soup = |soup: &Soup| soup.occluded(ray, limit);
         let copies = |copies: &Copies| copies.occluded(ray, limit);
         self.soup.as_ref().is_some_and(soup) || self.copies.as_ref().is_some_and(copies)

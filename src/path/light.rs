@@ -50,8 +50,8 @@ pub trait Light: Sync + Sized {
     /// [`Error::Refused`] for a number of emitters that this type is not made for.
     fn new(emitters: Vec<Emitter>) -> Result<Self, Error>;
 
-    /// The lights as [`AreaLights`], if they are that, perhaps none: a scene of such lights may be traced many paths at
-    /// once. `None` unless implemented.
+    /// The lights as [`AreaLights`], if they are that, perhaps none: where many paths are traced at once, they are drawn at once,
+    /// and others are asked one by one. `None` unless implemented.
     fn as_area_lights(&self) -> Option<&AreaLights> {
         None
     }

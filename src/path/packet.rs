@@ -1,7 +1,8 @@
 //! Many paths at once, one in each lane of the vectors that the machine has.
 //!
-//! For scenes of few shapes, and meshes and copies. Laws of scattering other than the ideally diffuse one, what a ray finds of all that
-//! is not flat, lights that are not flat or have a picture, and surroundings go lane by lane. Every lane has the bits of [`Paths::radiance`]: the same arithmetic in the same order, the coordinates read in the same order.
+//! For scenes of few shapes, and meshes and copies. Rays look for flat shapes and spheres, and paths are lit by flat lights and
+//! scattered ideally diffusely, in lanes; all else goes lane by lane. Every lane has the bits of [`Paths::radiance`]: the same
+//! arithmetic in the same order, the coordinates read in the same order.
 
 mod drawn;
 mod here;
@@ -57,7 +58,7 @@ pub(in crate::path) struct Packet {
     arch: pulp::Arch,
 }
 
-/// What packets ask of a view, one lane at a time.
+/// What packets ask of a view, most of it one lane at a time.
 pub(in crate::path) trait Single<U> {
     /// Where the path of a point begins.
     fn start(&self, u: &mut U) -> Start;
@@ -101,7 +102,7 @@ impl Packet {
     ) -> Option<Self> {
         let (primitives, sweep) = (geometry.shapes(), geometry.sweep()?);
         let (flats, spheres) = (&sweep.flat_shapes, &sweep.ball_shapes);
-        // What parts, triangles and copies are is kept in lanes.
+        // Which part a lane is at is kept in 32 bits, as the trees keep triangles and copies.
         u32::try_from(parts).ok()?;
         if primitives.len() > MOST {
             return None;
@@ -153,11 +154,12 @@ impl Packet {
             packet.shapes.push_ball(number, sphere);
             packet.dividing.push_ball(number, sphere);
         }
-        if !balls.is_empty() || geometry.has_rest() {
+        let rest = geometry.has_rest();
+        if !balls.is_empty() || rest {
             packet.solids = Some(Solids {
                 spheres: balls,
                 first,
-                rest: geometry.has_rest(),
+                rest,
                 optics: known,
                 smooth,
             });

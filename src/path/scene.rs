@@ -128,13 +128,13 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
             }
         }
         let few = shapes.len() <= FEW;
-        let flat = few && parts.lights_are_flat() && !meshes_shine;
+        let flat_lights = few && parts.lights_are_flat() && !meshes_shine;
         let geometry = Geometry::new(shapes, meshes, copies);
         check_scene(geometry.bounds())?;
         let mut emitters = parts.emitters;
-        // Where many paths go at once, drawing from the area is much the faster way.
-        let flat = flat && L::new(emitters.clone())?.as_area_lights().is_some();
-        let from_area = flat && !nearby::are_lit(&geometry, &emitters);
+        // Where lights go in lanes, drawing from the area is much the faster way.
+        let in_lanes = flat_lights && L::new(emitters.clone())?.as_area_lights().is_some();
+        let from_area = in_lanes && !nearby::are_lit(&geometry, &emitters);
         if !from_area {
             emitters.iter_mut().for_each(Emitter::by_solid_angle);
         }
@@ -153,19 +153,19 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
         };
         #[cfg(feature = "simd")]
         if few {
-            scene.packet = scene.packed(flat).map(Box::new);
+            scene.packet = scene.packed(in_lanes).map(Box::new);
         }
         Ok(scene)
     }
 
-    /// The scene for many paths at once, if it is one of those; `flat` if only flat shapes emit light, the same all over.
+    /// The scene for many paths at once, if it is one of those; `in_lanes` tells whether its lights are such as go in lanes.
     #[cfg(feature = "simd")]
-    fn packed(&self, flat: bool) -> Option<Packet> {
+    fn packed(&self, in_lanes: bool) -> Option<Packet> {
         let around = match self.environment.as_sky() {
             Some(_) => Some(Vec3A::ZERO),
             None => self.environment.constant(),
         };
-        let lights = self.lights.as_area_lights().filter(|_| flat);
+        let lights = self.lights.as_area_lights().filter(|_| in_lanes);
         let optics = |part: usize| {
             let owner = self.owners[part];
             let emitted = match (owner.emitter, lights) {

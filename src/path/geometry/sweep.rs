@@ -27,7 +27,7 @@ pub(in crate::path) struct Sweep {
     /// Which shape each of the spheres is.
     pub(in crate::path) ball_shapes: Vec<usize>,
     /// The other shapes, and which they are.
-    pub(super) others: Vec<(usize, Primitive)>,
+    pub(super) round: Vec<(usize, Primitive)>,
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     simd: Option<pulp::x86::V3>,
 }
@@ -35,12 +35,12 @@ pub(in crate::path) struct Sweep {
 impl Sweep {
     /// The sweep over `shapes`, in a scene of them and of what is in `boxes`.
     pub(super) fn new(shapes: &[Primitive], boxes: &[[Vec3A; 2]]) -> Self {
-        let (mut flats, mut balls, mut others) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut flats, mut balls, mut round) = (Vec::new(), Vec::new(), Vec::new());
         for (index, shape) in shapes.iter().enumerate() {
             match shape {
                 Primitive::Flat(flat) => flats.push((index, flat)),
                 Primitive::Sphere(sphere) => balls.push((index, sphere)),
-                other => others.push((index, *other)),
+                other => round.push((index, *other)),
             }
         }
         flats.sort_by_key(|(_, flat)| Kind::of(flat));
@@ -57,7 +57,7 @@ impl Sweep {
             flat_shapes: flats.iter().map(|&(index, _)| index).collect(),
             balls: Balls::blocks(balls.iter().map(|&(_, sphere)| sphere)),
             ball_shapes: balls.iter().map(|&(index, _)| index).collect(),
-            others,
+            round,
             #[cfg(all(feature = "simd", target_arch = "x86_64"))]
             simd: pulp::x86::V3::try_new(),
         }
@@ -67,14 +67,14 @@ impl Sweep {
     pub(super) fn nearest(&self, ray: &Ray) -> Option<Found> {
         let nearest = self.nearest_in_blocks(ray);
         let limit = nearest.map_or(f32::INFINITY, |found| found.distance);
-        self.nearest_other(ray, limit).or(nearest)
+        self.nearest_round(ray, limit).or(nearest)
     }
 
     /// The nearest shape before `limit` that is neither flat nor a sphere.
     #[inline]
-    pub(super) fn nearest_other(&self, ray: &Ray, mut limit: f32) -> Option<Found> {
+    pub(super) fn nearest_round(&self, ray: &Ray, mut limit: f32) -> Option<Found> {
         let mut nearest = None;
-        for &(shape, other) in &self.others {
+        for &(shape, other) in &self.round {
             if let Some(distance) = other.intersect(ray, limit) {
                 limit = distance;
                 nearest = Some(Found { shape, distance });
@@ -96,14 +96,14 @@ impl Sweep {
 
     #[inline]
     fn any(&self, flats: &[Flats], ray: &Ray, limit: f32) -> bool {
-        self.any_in_blocks(flats, ray, limit) || self.occluded_by_other(ray, limit)
+        self.any_in_blocks(flats, ray, limit) || self.occluded_by_round(ray, limit)
     }
 
     /// Whether the ray meets a shape nearer than `limit` that is neither flat nor a sphere.
     #[inline]
-    pub(super) fn occluded_by_other(&self, ray: &Ray, limit: f32) -> bool {
-        let mut others = self.others.iter();
-        others.any(|(_, other)| other.intersect(ray, limit).is_some())
+    pub(super) fn occluded_by_round(&self, ray: &Ray, limit: f32) -> bool {
+        let mut round = self.round.iter();
+        round.any(|(_, other)| other.intersect(ray, limit).is_some())
     }
 
     /// The nearest shape that is flat or a sphere; of several at the same distance the first.

@@ -104,7 +104,7 @@ impl Light for AreaLights {
         Ok(Self { emitters, choices })
     }
 
-    /// Not without emitters: coordinates are drawn all the same then, which packets do not.
+    /// Not without emitters: coordinates are drawn all the same then, which paths at once do only if they ask.
     fn as_area_lights(&self) -> Option<&Self> {
         (!self.emitters.is_empty()).then_some(self)
     }

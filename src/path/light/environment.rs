@@ -13,15 +13,14 @@ pub trait Environment: Sync {
     /// direction.
     fn emitted(&self, direction: Vec3A) -> Emission;
 
-    /// The radiance, if it is the same from everywhere and [`sample`](Self::sample) draws nothing: a scene with such an
-    /// environment may be traced many paths at once. `None` unless implemented.
+    /// The radiance, if it is the same from everywhere and [`sample`](Self::sample) draws nothing: where many paths are traced at
+    /// once, it is known to all, and other environments are asked one by one. `None` unless implemented.
     fn constant(&self) -> Option<Vec3A> {
         None
     }
 
     /// The picture of a sky, if [`emitted`](Self::emitted) and [`sample`](Self::sample) are those of that sky in every
-    /// respect: a scene with such an environment may be traced many paths at once, and asks the sky itself. `None` unless
-    /// implemented.
+    /// respect: where many paths are traced at once, the sky is asked for all of them. `None` unless implemented.
     fn as_sky(&self) -> Option<&Sky> {
         None
     }

@@ -118,6 +118,14 @@ impl Surroundings {
 }
 
 impl Environment for Surroundings {
+    fn constant(&self) -> Option<Vec3A> {
+        match &self.background {
+            Background::None if self.sources.is_empty() => Some(Vec3A::ZERO),
+            Background::Constant(constant) if self.sources.is_empty() => constant.constant(),
+            _ => None,
+        }
+    }
+
     fn as_sky(&self) -> Option<&Sky> {
         match &self.background {
             Background::Sky(sky) if self.sources.is_empty() => Some(sky),

@@ -12,6 +12,7 @@ use crate::path::bsdf::Scattered;
 use crate::path::geometry::Hit;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
 use crate::path::light::{Emission, Illumination, Sky};
+use crate::path::segment::End;
 
 /// Weights and densities, and the directions they belong to where those were drawn.
 pub(super) struct Weights {
@@ -119,6 +120,8 @@ impl SkyLight {
 pub(super) struct Illuminated {
     start: [Row<f32>; 3],
     limit: Row<f32>,
+    /// 1 where the way to it ends at no surface.
+    open: Row<f32>,
     /// The way to it.
     light: Weights,
 }
@@ -127,6 +130,7 @@ impl Illuminated {
     pub(super) const NONE: Self = Self {
         start: [Row::<f32>::ZERO; 3],
         limit: Row::<f32>::ZERO,
+        open: Row::<f32>::ZERO,
         light: Weights::NONE,
     };
 
@@ -140,15 +144,23 @@ impl Illuminated {
         {
             Row::set_vector(&mut self.start, lane, way.ray.origin);
             self.limit.0[lane] = way.length;
+            self.open.0[lane] = f32::from(u8::from(way.end() == End::Open));
             Row::set_vector(&mut self.light.direction, lane, way.ray.direction);
             self.light.set(lane, weight, density);
         }
     }
 
+    /// That at the ends of such ways.
     #[inline(always)]
-    pub(super) fn lamp<S: Simd>(&self, simd: S, active: Mask<S>) -> Lamp<S> {
+    pub(super) fn lamp<S: Simd>(&self, simd: S, end: End, active: Mask<S>) -> Lamp<S> {
+        let zero = Real::splat(simd, 0.0);
         let density = self.light.density(simd);
-        let active = active & density.gt(Real::splat(simd, 0.0));
+        let open = Real::load(simd, &self.open).gt(zero);
+        let here = match end {
+            End::Open => open,
+            End::Surface => !open,
+        };
+        let active = active & here & density.gt(zero);
         Lamp {
             start: Vector::load(simd, &self.start),
             into: self.light.direction(simd),

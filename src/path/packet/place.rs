@@ -219,7 +219,7 @@ pub(super) struct Place<S: Simd> {
     pub(super) second_edge: Vector<S>,
     pub(super) normal: Vector<S>,
     pub(super) margin: Real<S>,
-    /// The probability of the shape among the lights; negative if it is none.
+    /// The probability of the shape among the lights, 0 if the view is asked for its light; negative if it emits none.
     pub(super) chance: Real<S>,
 }
 

@@ -1,22 +1,25 @@
 //! Packets against single paths.
 
-use glam::{Affine2, Affine3A, DMat3, Mat3A, Vec2, Vec3};
+use glam::{Affine2, Affine3A, DMat3, Mat3A, Vec2, Vec3, Vec3A};
 
 use crate::hash::{hash, unit_f32};
 use crate::path::bsdf::{
     Bsdf, Conductor, Dielectric, Diffuse, Distribution, Lambertian, Mask, Material, Mirror, Null,
     Plastic, RoughConductor, Roughness, Tint,
 };
+use crate::path::frame::single;
 use crate::path::light::{
-    AreaLights, Background, Constant, DirectionalLight, Environment, Light, LightTree,
-    NoEnvironment, NoLight, PointLight, Sky, Source, Surroundings,
+    AreaLights, Background, Constant, DirectionalLight, Emission, Emitter, Environment,
+    Illumination, Light, LightTree, NoEnvironment, NoLight, PointLight, Sky, Source, Surroundings,
 };
 use crate::path::sensor::Pinhole;
 use crate::path::shape::{Cylinder, Disk, Flat, Mesh, Primitive, Sphere, cuboid};
 use crate::path::texture::{Checkerboard, Parameter, Texture, Uniform};
-use crate::path::{Instances, Object, Paths, Pixel, Scene, View, filter::BoxFilter, scenes};
+use crate::path::{
+    Instances, Object, Paths, Pixel, Scene, Segment, Surface, View, filter::BoxFilter, scenes,
+};
 use crate::points::{HashedOwen, PointSet, Sobol};
-use crate::{Error, Integrand};
+use crate::{Error, Integrand, Sampler};
 
 /// Every value of `evaluate_many` must be that of `evaluate`, to the bit.
 fn agree<B: Bsdf, L: Light, E: Environment>(view: &View<B, L, E, Pinhole>) {
@@ -113,7 +116,8 @@ fn packets_give_the_bits_of_single_paths_among_triangles_and_many_lights() {
     agree::<_, NoLight, _>(&room(false, sky).unwrap());
 }
 
-/// A ground and a lamp; disks, cylinders and a sphere; and copies, larger, smaller, turned and sheared, of a group of all of them and of a mesh.
+/// A ground and a lamp; disks, cylinders and a sphere; and copies, larger, smaller, turned and sheared, of a group of all
+/// of them and of a mesh.
 fn copies<B: Bsdf + Clone + From<Lambertian>, E: Environment>(
     law: &B,
     environment: E,
@@ -150,7 +154,7 @@ fn copies<B: Bsdf + Clone + From<Lambertian>, E: Environment>(
     });
     let group = vec![
         Object::new(round()?, law.clone()),
-        Object::mesh(mesh, white.clone()),
+        Object::mesh(mesh, law.clone()),
     ];
     let objects = vec![
         Object::new([ground], white.clone()),
@@ -393,8 +397,8 @@ fn lights<L: Light, E: Environment>(
     let screen = Flat::parallelogram([-2.0, -0.5, -1.0], [1.5, 0.0, -1.0], [0.0, 1.5, 0.0])?;
     let mut random = (0..).map(|state| unit_f32(hash(16, state)));
     let mut vector = || [0; 3].map(|_| 1.4 * random.next().unwrap() - 0.7);
-    let corners = (0..58).map(|first| [first, first + 1, first + 2]).collect();
-    let mesh = Mesh::new((0..60).map(|_| vector()).collect(), corners)?;
+    let corners: Vec<_> = (0..58).map(|first| [first, first + 1, first + 2]).collect();
+    let mut mesh = || Mesh::new((0..60).map(|_| vector()).collect(), corners.clone());
     let disk = Disk::new([1.5, 0.4, 0.1], [0.5, 0.0, 0.1], [0.0, 0.1, -0.5])?;
     let sphere = |x| Sphere::new([x, -0.3, 0.6], 0.3);
     let picture = Checkerboard::new(
@@ -409,7 +413,9 @@ fn lights<L: Light, E: Environment>(
         Object::new([sphere(-0.5)?], mirror),
         Object::new([disk], white.outside()).emitting([2.0; 3])?,
         Object::new([screen], white).emitting_picture(picture.into())?,
-        Object::mesh(mesh, white).emitting([0.2, 0.1, 0.3])?,
+        Object::mesh(mesh()?, white),
+        Object::mesh(mesh()?, white).emitting([0.2, 0.1, 0.3])?,
+        Object::mesh(mesh()?, white).emitting([0.3, 0.2, 0.1])?,
     ];
     Ok(View {
         scene: Scene::new(objects, environment)?,
@@ -447,6 +453,43 @@ fn packets_give_the_bits_of_single_paths_among_sources_without_size() {
     agree(&balls::<_, NoLight, _>(false, grey, around(Background::Constant(sky))).unwrap());
     agree::<_, AreaLights, _>(&room(true, around(Background::Constant(sky))).unwrap());
     agree::<_, AreaLights, _>(&lights(around(Background::None)).unwrap());
+    agree::<_, LightTree, _>(&lights(around(Background::None)).unwrap());
+    let diffuse = Lambertian::new([0.3, 0.9, 0.5]).unwrap();
+    agree(&copies(&diffuse, around(Background::None)).unwrap());
+    let pixels = [[0.1, 0.2, 0.3], [0.5, 3.0, 0.2]].repeat(16);
+    let sky = Sky::new(8, &pixels, DMat3::IDENTITY).unwrap();
+    agree(&balls::<_, AreaLights, _>(true, grey, around(Background::Sky(Box::new(sky)))).unwrap());
+}
+
+/// A light at a point, which no ray meets: of a kind that the crate does not know.
+#[derive(Debug)]
+struct Bulb;
+
+impl Light for Bulb {
+    fn new(_: Vec<Emitter>) -> Result<Self, Error> {
+        Ok(Self)
+    }
+
+    fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
+        let [x, y] = u.next_2d().map(single);
+        Some(Illumination {
+            // Beyond the walls, some of the time.
+            way: Segment::to_point(from, Vec3A::new(2.0 * x - 1.0, 2.0 * y - 1.0, 0.3))?,
+            weight: Vec3A::new(3.0, 2.0, 1.0),
+            density: f32::INFINITY,
+        })
+    }
+
+    fn emitted(&self, _: u32, _: Vec3A, _: &Surface) -> Emission {
+        Emission::NONE
+    }
+}
+
+/// Ways to lights end at surfaces or do not, whatever the kind of light.
+#[test]
+fn packets_give_the_bits_of_single_paths_among_lights_of_other_kinds() {
+    agree::<_, Bulb, _>(&room(false, NoEnvironment).unwrap());
+    agree::<_, Bulb, _>(&room(true, Constant::new([0.2; 3]).unwrap()).unwrap());
 }
 
 #[test]

@@ -17,11 +17,12 @@ use crate::path::Paths;
 use crate::path::frame::single;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
 use crate::path::light::Sky;
+use crate::path::segment::End;
 
 /// The paths of some points.
 ///
-/// `PLAIN` ones are in a scene of flat shapes that scatter light ideally diffusely, without a picture around it: the code for all else
-/// is left out.
+/// `PLAIN` ones are in a scene of flat shapes that scatter light ideally diffusely, with flat lights and the same radiance all around: the
+/// code for all else is left out.
 pub(super) struct Walk<'a, U, const PLAIN: bool> {
     pub(super) packet: &'a Packet,
     pub(super) paths: Paths,
@@ -171,10 +172,10 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
                 let sum = radiance + throughput * light.weight(simd) * power(density, other);
                 radiance = missed.choose(sum, radiance);
             }
-        } else if others || asks_lights {
+        } else if others {
             // As the loop over single paths has it, whatever the densities of a law are.
-            let around = Vector::splat(simd, packet.around);
-            let sum = radiance + throughput * around * power(density, zero);
+            let constant = Vector::splat(simd, packet.around);
+            let sum = radiance + throughput * constant * power(density, zero);
             radiance = missed.choose(sum, radiance);
         } else if packet.around != Vec3A::ZERO {
             let sum = radiance + throughput * Vector::splat(simd, packet.around);
@@ -182,8 +183,9 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         }
 
         let here = packet.here(simd, &hit, solids.as_ref());
-        let asked = others || asks_lights || asks_around;
-        let hits = asked.then(|| here.hits(&packet.table, &state.direction));
+        // What the view is asked about these points.
+        let asks = others || asks_lights || asks_around;
+        let hits = asks.then(|| here.hits(&packet.table, &state.direction));
         // Emitted light, met by a direction that was drawn at the surface before.
         let mut lit = met & here.shines();
         if !asks_lights {
@@ -230,13 +232,13 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             sky: None,
             scattered: others.then_some(Scatters::NONE),
         };
-        let [a, b, c, d] = if asked || sky.is_some() {
+        let [a, b, c, d] = if asks || sky.is_some() {
             self.draw(simd, state, (walking, &kind.row()), at.hits, &mut draws)
         } else {
             self.draw_diffuse(simd, state, walking, &mut draws.chosen)
         };
 
-        // Next-event estimation: light met by drawing a point of the lights, and one of the sky.
+        // Next-event estimation: light met by drawing a point of the lights, and one of what is around.
         let mut seeing = walking;
         if others {
             seeing = seeing & kind.lt(Real::splat(simd, DELTA));
@@ -245,16 +247,21 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             let lamp = packet.lamp(simd, &here, &draws.chosen, [a, b], seeing);
             radiance = self.lit(simd, &at, &lamp, &packet.dividing, (throughput, radiance));
         }
-        if !PLAIN {
-            if let Some(light) = &draws.lamp {
-                let lamp = light.lamp(simd, seeing);
-                radiance = self.lit(simd, &at, &lamp, &packet.dividing, (throughput, radiance));
+        for light in [&draws.lamp, &draws.around].into_iter().flatten() {
+            let ends = [
+                (End::Surface, &packet.dividing),
+                (End::Open, &packet.shapes),
+            ];
+            for (end, between) in ends {
+                let lamp = light.lamp(simd, end, seeing);
+                if lamp.active.any() {
+                    radiance = self.lit(simd, &at, &lamp, between, (throughput, radiance));
+                }
             }
-            let around = draws.around.as_ref().map(|light| light.lamp(simd, seeing));
-            let sky = draws.sky.as_ref();
-            if let Some(lamp) = around.or_else(|| Some(sky?.lamp(simd, &here, seeing))) {
-                radiance = self.lit(simd, &at, &lamp, &packet.shapes, (throughput, radiance));
-            }
+        }
+        if let Some(sky) = &draws.sky {
+            let lamp = sky.lamp(simd, &here, seeing);
+            radiance = self.lit(simd, &at, &lamp, &packet.shapes, (throughput, radiance));
         }
 
         // All other light, by drawing a direction.
@@ -397,7 +404,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         u.map(|row| Real::load(simd, &row))
     }
 
-    /// The same where all laws are ideally diffuse and no picture is around.
+    /// The same where all laws are ideally diffuse, the view is asked for no light, and no picture is around.
     #[inline(always)]
     fn draw_diffuse<S: Simd>(
         &mut self,

@@ -50,7 +50,7 @@ impl BinaryScramble for LinearMatrix {
     }
 }
 
-/// The matrix of these columns times a column: the sum of those where it has ones, of which a generator matrix has few.
+/// The matrix of these columns times a column: the sum of those where it has ones.
 fn product(matrix: &Columns, mut column: u64) -> u64 {
     let mut sum = 0;
     while column != 0 {

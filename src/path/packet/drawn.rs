@@ -41,10 +41,19 @@ impl Weights {
         directions: &[Row<f32>; 3],
         active: &Row<f32>,
     ) -> Self {
+        Self::of(active, |lane| {
+            let Emission { radiance, density } = single.background(Row::vector(directions, lane));
+            (radiance, density)
+        })
+    }
+
+    /// The weights and densities of the active lanes.
+    #[inline(always)]
+    fn of(active: &Row<f32>, one: impl Fn(usize) -> (Vec3A, f32)) -> Self {
         let mut weights = Self::NONE;
         for lane in (0..WIDEST).filter(|&lane| active.0[lane] > 0.0) {
-            let emission = single.background(Row::vector(directions, lane));
-            weights.set(lane, emission.radiance, emission.density);
+            let (weight, density) = one(lane);
+            weights.set(lane, weight, density);
         }
         weights
     }
@@ -258,12 +267,11 @@ impl Hits<'_> {
         origin: &[Row<f32>; 3],
         active: &Row<f32>,
     ) -> Weights {
-        let mut weights = Weights::NONE;
-        for lane in (0..WIDEST).filter(|&lane| active.0[lane] > 0.0) {
-            let emission = single.emitted(&self.hit(lane), Row::vector(origin, lane));
-            weights.set(lane, emission.radiance, emission.density);
-        }
-        weights
+        Weights::of(active, |lane| {
+            let origin = Row::vector(origin, lane);
+            let Emission { radiance, density } = single.emitted(&self.hit(lane), origin);
+            (radiance, density)
+        })
     }
 
     /// What the laws of the active lanes do for light from some directions.
@@ -274,12 +282,10 @@ impl Hits<'_> {
         into: &[Row<f32>; 3],
         active: &Row<f32>,
     ) -> Weights {
-        let mut weights = Weights::NONE;
-        for lane in (0..WIDEST).filter(|&lane| active.0[lane] > 0.0) {
+        Weights::of(active, |lane| {
             let into = Row::vector(into, lane);
             let scattering = single.evaluate(&self.hit(lane), self.out(lane), into);
-            weights.set(lane, scattering.value, scattering.density);
-        }
-        weights
+            (scattering.value, scattering.density)
+        })
     }
 }

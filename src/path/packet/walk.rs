@@ -351,9 +351,9 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         visible.choose(radiance + sum, radiance)
     }
 
-    /// What the paths draw at their points, where laws are of any kind or the sky is a picture: two coordinates for a point of
-    /// the lights, which choose one first; two for the sky; and two for the next direction of the ideally diffuse law, or
-    /// what others draw.
+    /// What the paths draw at their points, where the view is asked or the sky is a picture: two coordinates for a point of flat
+    /// lights, which choose one first, or what others draw; two for the sky, or what other surroundings draw; and two for the
+    /// next direction of the ideally diffuse law, or what others draw.
     #[inline(always)]
     fn draw<S: Simd>(
         &mut self,

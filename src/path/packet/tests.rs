@@ -63,6 +63,20 @@ fn packets_give_the_bits_of_single_paths_in_the_cornell_box() {
     agree(&view);
 }
 
+/// A scene, seen from `origin` towards the middle at an angle of so many degrees.
+fn seen_from<B: Bsdf, L: Light, E: Environment>(
+    origin: [f32; 3],
+    degrees: f64,
+    scene: Scene<B, L, E>,
+) -> Result<View<B, L, E, Pinhole>, Error> {
+    Ok(View {
+        scene,
+        sensor: Pinhole::look_at(origin, [0.0; 3], [0.0, 1.0, 0.0], degrees, 1.4)?,
+        filter: BoxFilter,
+        paths: Paths::default(),
+    })
+}
+
 /// A room of triangles, turned, below a sky, with lights of both kinds.
 fn room<L: Light, E: Environment>(
     lit: bool,
@@ -100,12 +114,7 @@ fn room<L: Light, E: Environment>(
         let lamp = Flat::parallelogram([-0.1, 0.7, 0.0], [0.2, 0.0, 0.0], [0.0, 0.0, 0.2])?;
         objects.push(Object::new([lamp], Lambertian::new([0.0; 3])?).emitting([9.0; 3])?);
     }
-    Ok(View {
-        scene: Scene::new(objects, environment)?,
-        sensor: Pinhole::look_at([0.1, -0.1, -0.9], [0.0; 3], [0.0, 1.0, 0.0], 70.0, 1.4)?,
-        filter: BoxFilter,
-        paths: Paths::default(),
-    })
+    seen_from([0.1, -0.1, -0.9], 70.0, Scene::new(objects, environment)?)
 }
 
 #[test]
@@ -165,12 +174,11 @@ fn copies<B: Bsdf + Clone + From<Lambertian>, E: Environment>(
         objects: group,
         places: places.collect(),
     };
-    Ok(View {
-        scene: Scene::with_instances(objects, vec![copies], environment)?,
-        sensor: Pinhole::look_at([0.1, 1.0, 3.0], [0.0; 3], [0.0, 1.0, 0.0], 60.0, 1.4)?,
-        filter: BoxFilter,
-        paths: Paths::default(),
-    })
+    seen_from(
+        [0.1, 1.0, 3.0],
+        60.0,
+        Scene::with_instances(objects, vec![copies], environment)?,
+    )
 }
 
 #[test]
@@ -227,12 +235,7 @@ fn meshes<B: Bsdf + From<Lambertian>, E: Environment>(
         let mesh = if k == 2 { mesh.turned() } else { mesh };
         objects.push(Object::mesh(mesh, law([0.2, 0.6, 0.8], one_sided)?));
     }
-    Ok(View {
-        scene: Scene::new(objects, environment)?,
-        sensor: Pinhole::look_at([0.1, -0.1, -0.9], [0.0; 3], [0.0, 1.0, 0.0], 70.0, 1.4)?,
-        filter: BoxFilter,
-        paths: Paths::default(),
-    })
+    seen_from([0.1, -0.1, -0.9], 70.0, Scene::new(objects, environment)?)
 }
 
 #[test]
@@ -320,12 +323,7 @@ fn balls<P: Parameter + From<Uniform>, L: Light, E: Environment>(
         let mesh = Mesh::new(vectors(0.5), corners)?.with_normals(vectors(0.7))?;
         objects.push(Object::mesh(mesh, law.clone()));
     }
-    Ok(View {
-        scene: Scene::new(objects, environment)?,
-        sensor: Pinhole::look_at([0.1, 1.5, 3.0], [0.0; 3], [0.0, 1.0, 0.0], 60.0, 1.4)?,
-        filter: BoxFilter,
-        paths: Paths::default(),
-    })
+    seen_from([0.1, 1.5, 3.0], 60.0, Scene::new(objects, environment)?)
 }
 
 #[test]
@@ -417,12 +415,7 @@ fn lights<L: Light, E: Environment>(
         Object::mesh(mesh()?, white).emitting([0.2, 0.1, 0.3])?,
         Object::mesh(mesh()?, white).emitting([0.3, 0.2, 0.1])?,
     ];
-    Ok(View {
-        scene: Scene::new(objects, environment)?,
-        sensor: Pinhole::look_at([0.1, 1.0, 3.0], [0.0; 3], [0.0, 1.0, 0.0], 60.0, 1.4)?,
-        filter: BoxFilter,
-        paths: Paths::default(),
-    })
+    seen_from([0.1, 1.0, 3.0], 60.0, Scene::new(objects, environment)?)
 }
 
 #[test]

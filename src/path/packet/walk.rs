@@ -1,5 +1,7 @@
 //! The radiance loop, a path a lane.
 
+mod choices;
+
 use core::f32::consts::FRAC_1_PI;
 
 use glam::{Vec3, Vec3A};
@@ -14,7 +16,6 @@ use super::sweep::Shapes;
 use super::{Packet, Single, Start};
 use crate::Sampler;
 use crate::path::Paths;
-use crate::path::frame::single;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
 use crate::path::light::Sky;
 use crate::path::segment::End;
@@ -349,123 +350,5 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         }
         let sum = throughput * value * lamp.weight * power(lamp.density, other);
         visible.choose(radiance + sum, radiance)
-    }
-
-    /// What the paths draw at their points, where the view is asked or the sky is a picture: two coordinates for a point of flat
-    /// lights, which choose one first, or what others draw; two for the sky, or what other surroundings draw; and two for the
-    /// next direction of the ideally diffuse law, or what others draw.
-    #[inline(always)]
-    fn draw<S: Simd>(
-        &mut self,
-        simd: S,
-        state: &State,
-        (walking, kinds): (Mask<S>, &Row<f32>),
-        hits: Option<&Hits<'_>>,
-        draws: &mut Draws,
-    ) -> [Real<S>; 4] {
-        let lit = !self.packet.emitters.is_empty();
-        let walks = walking.row(simd);
-        let mut u = [Row::<f32>::ZERO; 4];
-        let (mut lanes, mut coordinates, mut count) = ([0; WIDEST], [[0.0; 2]; WIDEST], 0);
-        for lane in (0..S::F32_LANES).filter(|&lane| walks.0[lane] > 0.0) {
-            let sampler = &mut self.points[state.point[lane]];
-            let kind = kinds.0[lane];
-            if lit && kind != DELTA {
-                let [a, b] = sampler.next_2d();
-                let (shape, a) = self.packet.choose(a);
-                draws.chosen.0[lane] = shape;
-                (u[0].0[lane], u[1].0[lane]) = (single(a), single(b));
-            }
-            if let (Some(hits), Some(lamp)) = (hits, &mut draws.lamp)
-                && kind != DELTA
-            {
-                lamp.set(lane, self.single.lamp(&hits.hit(lane), sampler));
-            }
-            if let (Some(hits), Some(around)) = (hits, &mut draws.around)
-                && kind != DELTA
-            {
-                around.set(lane, self.single.around(&hits.hit(lane), sampler));
-            }
-            if self.sky.is_some() && kind != DELTA {
-                (lanes[count], coordinates[count]) = (lane, sampler.next_2d());
-                count += 1;
-            }
-            if kind == 0.0 {
-                let [c, d] = sampler.next_2d();
-                (u[2].0[lane], u[3].0[lane]) = (single(c), single(d));
-            } else if let (Some(hits), Some(scattered)) = (hits, &mut draws.scattered) {
-                let (hit, out) = (hits.hit(lane), hits.out(lane));
-                scattered.set(lane, self.single.sample(&hit, out, sampler));
-            }
-        }
-        if let Some(sky) = self.sky {
-            draws.sky = Some(SkyLight::drawn(sky, &lanes[..count], &coordinates));
-        }
-        u.map(|row| Real::load(simd, &row))
-    }
-
-    /// The same where all laws are ideally diffuse, the view is asked for no light, and no picture is around.
-    #[inline(always)]
-    fn draw_diffuse<S: Simd>(
-        &mut self,
-        simd: S,
-        state: &State,
-        walking: Mask<S>,
-        chosen: &mut Row<u32>,
-    ) -> [Real<S>; 4] {
-        let lit = !self.packet.emitters.is_empty();
-        let walks = walking.row(simd);
-        let mut u = [Row::<f32>::ZERO; 4];
-        for lane in 0..S::F32_LANES {
-            if walks.0[lane] == 0.0 {
-                continue;
-            }
-            let sampler = &mut self.points[state.point[lane]];
-            let mut point = [0.0; 4];
-            if lit {
-                sampler.next_nd(&mut point);
-                (chosen.0[lane], point[0]) = self.packet.choose(point[0]);
-            } else {
-                sampler.next_nd(&mut point[2..]);
-            }
-            for (row, number) in u.iter_mut().zip(point) {
-                row.0[lane] = single(number);
-            }
-        }
-        let [a, b, c, d] = &u;
-        [
-            Real::load(simd, a),
-            Real::load(simd, b),
-            Real::load(simd, c),
-            Real::load(simd, d),
-        ]
-    }
-
-    /// Russian roulette: the weights of the paths that go on, zero for those that end.
-    #[inline(always)]
-    fn play<S: Simd>(
-        &mut self,
-        simd: S,
-        state: &State,
-        playing: Mask<S>,
-        carried: Real<S>,
-    ) -> Real<S> {
-        let plays = playing.row(simd);
-        let mut weights = Row::<f32>::ZERO;
-        carried.store(&mut weights);
-        for lane in 0..S::F32_LANES {
-            if plays.0[lane] > 0.0 {
-                let u = &mut self.points[state.point[lane]];
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "a count"
-                )]
-                let segment = state.segment.0[lane] as u32;
-                let survivor = self.paths.roulette.play(segment, weights.0[lane], u);
-                weights.0[lane] = survivor.unwrap_or(0.0);
-            }
-        }
-        Real::load(simd, &weights)
     }
 }

@@ -1,5 +1,8 @@
 //! Directions around a normal, and the maps of the square that draw them.
 
+#[cfg(feature = "simd")]
+pub(in crate::path) mod lanes;
+
 use core::f32::consts::{FRAC_1_PI, FRAC_PI_4};
 
 use glam::Vec3A;
@@ -108,8 +111,20 @@ pub(in crate::path) fn turn(u: f32) -> [f32; 2] {
     }
 }
 
+/// The arc tangent of a number in `[0, 1]` in turns, over the number, as a polynomial of its square: a fit of least relative error, 1e-7.
+const ARC_TANGENT: [f32; 8] = [
+    0.159_154_92,
+    -0.053_049_512,
+    0.031_782_817,
+    -0.022_312_757,
+    0.015_779_234,
+    -0.009_467_746,
+    0.003_860_018_2,
+    -0.000_746_992_36,
+];
+
 /// The angle of the point `(x, y)` in turns, counted from the x axis towards the y axis: in `[0, 1]`, within 2e-7, and 0 for the
-/// origin. The inverse of [`turn`]. The polynomial is a fit of least relative error, 1e-7, to the arc tangent.
+/// origin. The inverse of [`turn`].
 #[inline]
 pub(in crate::path) fn turns(y: f32, x: f32) -> f32 {
     let (wide, high) = (x.abs(), y.abs());
@@ -120,17 +135,7 @@ pub(in crate::path) fn turns(y: f32, x: f32) -> f32 {
     };
     let q = if large > 0.0 { low / large } else { 0.0 };
     let s = q * q;
-    let series = [
-        0.159_154_92,
-        -0.053_049_512,
-        0.031_782_817,
-        -0.022_312_757,
-        0.015_779_234,
-        -0.009_467_746,
-        0.003_860_018_2,
-        -0.000_746_992_36,
-    ];
-    let eighth = q * series
+    let eighth = q * ARC_TANGENT
         .into_iter()
         .rev()
         .fold(0.0, |sum, term| sum * s + term);

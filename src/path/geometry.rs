@@ -11,7 +11,7 @@ mod stack;
 mod sweep;
 mod tree;
 
-use glam::Vec3A;
+use glam::{Vec2, Vec3A};
 
 use super::Shading;
 use super::ray::{Ray, Surface};
@@ -59,6 +59,8 @@ pub(in crate::path) struct Hit {
     pub(in crate::path) surface: Surface,
     /// Which triangle of all meshes, if it is one.
     pub(in crate::path) triangle: usize,
+    /// The coordinates along the edges of the triangle.
+    pub(in crate::path) along: Vec2,
     /// Which copy, if it is one.
     pub(in crate::path) copy: Option<usize>,
 }
@@ -122,16 +124,17 @@ impl Geometry {
     fn nearest_beside(&self, ray: &Ray, mut limit: f32) -> Option<(Hit, f32)> {
         let mut nearest = None;
         if let Some(soup) = &self.soup
-            && let Some(Found { shape, distance }) = soup.nearest(ray, limit)
+            && let Some(struck) = soup.nearest(ray, limit)
         {
-            limit = distance;
+            limit = struck.distance;
             let hit = Hit {
-                part: self.shapes.len() + soup.mesh(shape),
-                surface: soup.surface(shape, ray, distance),
-                triangle: shape,
+                part: self.shapes.len() + struck.mesh,
+                surface: struck.surface,
+                triangle: struck.triangle,
+                along: struck.along,
                 copy: None,
             };
-            nearest = Some((hit, distance));
+            nearest = Some((hit, limit));
         }
         let copies = self.copies.as_ref();
         copies
@@ -154,6 +157,7 @@ impl Geometry {
             part: shape,
             surface: self.shapes[shape].surface(ray, distance),
             triangle: 0,
+            along: Vec2::ZERO,
             copy: None,
         }
     }
@@ -165,7 +169,7 @@ impl Geometry {
         }
         match (self.shapes.get(hit.part), &self.soup) {
             (Some(shape), _) => shape.shading(&hit.surface),
-            (None, Some(soup)) => soup.shading(hit.triangle, &hit.surface),
+            (None, Some(soup)) => soup.shading(hit),
             (None, None) => unreachable!("a hit is of a shape or of a mesh"),
         }
     }
@@ -219,7 +223,7 @@ impl Geometry {
             return self.shading(hit).normal;
         }
         match (hit.part.checked_sub(self.shapes.len()), &self.soup) {
-            (Some(mesh), Some(soup)) => soup.normal(mesh, hit.triangle, &hit.surface),
+            (Some(mesh), Some(soup)) => soup.normal(mesh, hit),
             _ => hit.surface.normal,
         }
     }

@@ -393,6 +393,11 @@ impl<S: Simd> Vector<S> {
     }
 
     #[inline(always)]
+    pub(in crate::path) fn lerp(self, other: Self, u: Real<S>) -> Self {
+        self * (1.0 - u) + other * u
+    }
+
+    #[inline(always)]
     pub(in crate::path) fn length(self) -> Real<S> {
         self.dot(self).sqrt()
     }

@@ -36,6 +36,8 @@ pub use directional::DirectionalLight;
 pub use environment::{Constant, Environment, NoEnvironment};
 pub use point::PointLight;
 pub use projector::ProjectorLight;
+#[cfg(feature = "simd")]
+pub(in crate::path) use sky::Seen;
 pub use sky::Sky;
 pub use spot::SpotLight;
 pub use surroundings::{Background, Source, Surroundings};

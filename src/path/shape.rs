@@ -29,6 +29,7 @@ pub use cuboid::cuboid;
 pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use flat::Flat;
+pub(in crate::path) use flat::{Edges, inset, kept_inside};
 pub use mesh::Mesh;
 pub use sphere::Sphere;
 

@@ -94,7 +94,14 @@ impl Piecewise {
     pub(super) fn locate_in(&self, bracket: [u32; 2], u: f64) -> (usize, f64) {
         // The first end above u: the cell before it has room for u, so it is none of weight zero.
         let [first, last] = bracket.map(|end| end as usize);
-        let within = self.cumulative[first..last].partition_point(|&end| end <= u);
+        let within = match self.cumulative.get(first..first + FEW) {
+            // Without branches. Ends past the last are above u, if that is below 1.
+            Some(ends) if last - first <= FEW => {
+                let below = ends.iter().filter(|&&end| end <= u).count();
+                below.min(last - first)
+            }
+            _ => self.cumulative[first..last].partition_point(|&end| end <= u),
+        };
         let cell = first + within - 1;
         let within = (u - self.cumulative[cell]) / self.probability(cell);
         (cell, coordinate(within))
@@ -121,6 +128,9 @@ impl Piecewise {
         (0.0..1.0).contains(&x).then(|| cell.min(cells - 1))
     }
 }
+
+/// So many ends are compared at once.
+const FEW: usize = 4;
 
 /// Which of `parts` equal parts of `[0, 1)` a number lies in, up to rounding, which keeps the order; the last if the number
 /// is 1.

@@ -178,9 +178,15 @@ impl Copies {
             ..*hit
         };
         let shading = copied.group.shading(&inside);
+        // The plain normal is there already, without what rounding does on the way in and out.
+        let normal = if shading.normal == inside.surface.normal {
+            hit.surface.normal
+        } else {
+            (copied.normals * shading.normal).normalize()
+        };
         Shading {
             uv: shading.uv,
-            normal: (copied.normals * shading.normal).normalize(),
+            normal,
             du: copied.outward.transform_vector3a(shading.du),
             dv: copied.outward.transform_vector3a(shading.dv),
             facet: shading.facet,

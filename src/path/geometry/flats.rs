@@ -1,6 +1,9 @@
 //! Eight flat shapes at once.
 
-use crate::path::shape::Flat;
+use glam::{Vec2, Vec3A};
+
+use crate::path::ray::{Ray, Surface};
+use crate::path::shape::{Edges, Flat, inset, kept_inside};
 
 /// How many shapes there are in a block.
 pub(super) const LANES: usize = 8;
@@ -59,7 +62,35 @@ impl Flats {
         blocks(shapes, Self::default(), Self::set)
     }
 
-    fn set(&mut self, lane: usize, flat: &Flat) {
+    /// Where a ray meets the triangle in a lane, to the bit what [`Flat::surface`](crate::path::shape::Shape::surface) gives, and the coordinates
+    /// along the edges there. Those are as they were before any turning, which `turned` tells of.
+    #[inline]
+    pub(super) fn surface(
+        &self,
+        lane: usize,
+        edges: &Edges,
+        turned: bool,
+        ray: &Ray,
+        distance: f32,
+    ) -> (Surface, Vec2) {
+        let vector = |[x, y, z]: &[Lanes; 3]| Vec3A::new(x[lane], y[lane], z[lane]);
+        let normal = vector(&self.normal);
+        let inside = ray.direction * distance - (edges.corner - ray.origin);
+        let along = [&self.first_dual, &self.second_dual].map(|dual| inside.dot(vector(dual)));
+        let slack = self.slack.each_ref().map(|slack| slack[lane]);
+        let [s, t] = kept_inside(along, inset(slack), self.slant[lane]);
+        let along = if turned { [t, s] } else { [s, t] };
+        // The sum of two numbers does not depend on their order.
+        let surface = Surface {
+            point: edges.corner + (edges.first * along[0] + edges.second * along[1]),
+            normal,
+            margin: edges.margin(normal),
+            detail: (),
+        };
+        (surface, Vec2::from(along))
+    }
+
+    pub(super) fn set(&mut self, lane: usize, flat: &Flat) {
         for axis in 0..3 {
             self.corner[axis][lane] = flat.corner[axis];
             self.normal[axis][lane] = flat.normal[axis];

@@ -1,11 +1,11 @@
 //! The triangles of all meshes.
 
-use glam::Vec3A;
+use glam::{Vec2, Vec3A};
 
-use super::Found;
-use super::flats::Flats;
+use super::Hit;
+use super::flats::{Flats, LANES};
 use super::probe::Probe;
-use super::tree::{Leaves, Tree};
+use super::tree::{InLeaf, Leaves, Tree};
 use crate::path::Shading;
 use crate::path::ray::{Ray, Surface};
 use crate::path::shape::{Flat, Mesh, Shape};
@@ -16,11 +16,46 @@ pub(super) struct Soup {
     meshes: Vec<Mesh>,
     /// The number of triangles before each mesh.
     starts: Vec<usize>,
-    flats: Vec<Flat>,
     tree: Tree,
     /// Those of each leaf of the tree.
-    blocks: Vec<Flats>,
+    blocks: Vec<Block>,
     bounds: [Vec3A; 2],
+}
+
+/// The triangles of a leaf, and their numbers: eight lines of a cache.
+#[derive(Debug)]
+#[repr(align(64))]
+struct Block {
+    flats: Flats,
+    numbers: [u32; LANES],
+}
+
+impl Block {
+    /// The triangles of the given numbers, at most eight.
+    fn new(flats: &[Flat], leaf: impl Iterator<Item = usize>) -> Self {
+        let mut block = Self {
+            flats: Flats::default(),
+            numbers: [0; LANES],
+        };
+        for (lane, triangle) in leaf.enumerate() {
+            block.flats.set(lane, &flats[triangle]);
+            block.numbers[lane] =
+                u32::try_from(triangle).expect("a tree has fewer than 2^32 triangles");
+        }
+        block
+    }
+}
+
+/// A triangle that a ray meets.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Struck {
+    /// The number among all triangles.
+    pub(super) triangle: usize,
+    /// Of the mesh that it belongs to.
+    pub(super) mesh: usize,
+    pub(super) distance: f32,
+    pub(super) surface: Surface,
+    pub(super) along: Vec2,
 }
 
 impl Soup {
@@ -33,16 +68,14 @@ impl Soup {
             flats.extend((0..mesh.triangles().len()).map(|triangle| mesh.flat(triangle)));
         }
         let tree = (!flats.is_empty()).then(|| Tree::new(&flats))?;
-        let blocks = tree
-            .leaves()
-            .flat_map(|leaf| Flats::blocks(leaf.map(|triangle| &flats[triangle])))
+        let blocks = (tree.leaves())
+            .map(|leaf| Block::new(&flats, leaf))
             .collect();
         let bounds = super::around(flats.iter().map(Shape::bounds));
         Some(Self {
             bounds,
             meshes,
             starts,
-            flats,
             tree,
             blocks,
         })
@@ -53,9 +86,26 @@ impl Soup {
     }
 
     #[inline]
-    pub(super) fn nearest(&self, ray: &Ray, limit: f32) -> Option<Found> {
+    pub(super) fn nearest(&self, ray: &Ray, limit: f32) -> Option<Struck> {
         let mut leaves = Blocks(&self.blocks);
-        self.tree.nearest_in_leaves(ray, limit, &mut leaves)
+        let InLeaf {
+            leaf,
+            lane,
+            distance,
+        } = self.tree.nearest_in_leaves(ray, limit, &mut leaves)?;
+        let block = &self.blocks[leaf];
+        let triangle = block.numbers[lane] as usize;
+        let mesh = self.mesh(triangle);
+        let edges = self.meshes[mesh].edges(triangle - self.starts[mesh]);
+        let turned = self.meshes[mesh].is_turned();
+        let (surface, along) = block.flats.surface(lane, &edges, turned, ray, distance);
+        Some(Struck {
+            triangle,
+            mesh,
+            distance,
+            surface,
+            along,
+        })
     }
 
     #[inline]
@@ -64,43 +114,81 @@ impl Soup {
         self.tree.any_in_leaves(ray, limit, &mut leaves)
     }
 
-    #[inline]
-    pub(super) fn surface(&self, triangle: usize, ray: &Ray, distance: f32) -> Surface {
-        self.flats[triangle].surface(ray, distance)
-    }
-
     /// Which of the meshes a triangle belongs to.
     #[inline]
-    pub(super) fn mesh(&self, triangle: usize) -> usize {
+    fn mesh(&self, triangle: usize) -> usize {
         self.starts.partition_point(|&start| start <= triangle) - 1
     }
 
-    /// The normal that light is scattered by at a point of a triangle.
+    /// The normal that light is scattered by at a point of a triangle of a mesh.
     #[cfg(feature = "simd")]
     #[inline]
-    pub(super) fn normal(&self, mesh: usize, triangle: usize, surface: &Surface) -> Vec3A {
-        let within = triangle - self.starts[mesh];
-        self.meshes[mesh].normal(within, &self.flats[triangle], surface)
+    pub(super) fn normal(&self, mesh: usize, hit: &Hit) -> Vec3A {
+        let triangle = hit.triangle - self.starts[mesh];
+        self.meshes[mesh].normal(triangle, hit.surface.normal, hit.along)
     }
 
-    pub(super) fn shading(&self, triangle: usize, surface: &Surface) -> Shading {
-        let mesh = self.mesh(triangle);
-        let within = triangle - self.starts[mesh];
-        self.meshes[mesh].shading(within, &self.flats[triangle], surface)
+    pub(super) fn shading(&self, hit: &Hit) -> Shading {
+        let mesh = self.mesh(hit.triangle);
+        let triangle = hit.triangle - self.starts[mesh];
+        self.meshes[mesh].shading(triangle, hit.surface.normal, hit.along)
     }
 }
 
 /// The triangles of each leaf.
-struct Blocks<'a>(&'a [Flats]);
+struct Blocks<'a>(&'a [Block]);
 
 impl Leaves for Blocks<'_> {
     #[inline(always)]
     fn nearest(&mut self, probe: &impl Probe, leaf: usize, limit: f32) -> Option<(usize, f32)> {
-        probe.meet(&self.0[leaf], limit).nearest()
+        probe.meet(&self.0[leaf].flats, limit).nearest()
     }
 
     #[inline(always)]
     fn any(&mut self, probe: &impl Probe, leaf: usize, limit: f32) -> bool {
-        probe.meet(&self.0[leaf], limit).which != 0
+        probe.meet(&self.0[leaf].flats, limit).which != 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hash::{hash, unit_f32};
+
+    fn vector(seed: u64) -> [f32; 3] {
+        core::array::from_fn(|axis| unit_f32(hash(seed, axis as u64)) - 0.5)
+    }
+
+    #[test]
+    fn a_triangle_is_hit_where_its_shape_is() {
+        let mesh = |first: u64| {
+            let triangles = (0..100).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+            Mesh::new((first..first + 300).map(vector).collect(), triangles).unwrap()
+        };
+        let meshes = vec![mesh(0), mesh(300).turned()];
+        let soup = Soup::new(meshes.clone()).unwrap();
+        let mut met = [0, 0];
+        for seed in 0..1000 {
+            let ray = Ray {
+                origin: Vec3A::from(vector(1000 + seed)),
+                direction: Vec3A::from(vector(3000 + seed)).normalize(),
+            };
+            let Some(struck) = soup.nearest(&ray, f32::INFINITY) else {
+                continue;
+            };
+            let flat = meshes[struck.mesh].flat(struck.triangle - soup.starts[struck.mesh]);
+            assert_eq!(flat.intersect(&ray, f32::INFINITY), Some(struck.distance));
+            let surface = flat.surface(&ray, struck.distance);
+            assert_eq!(struck.surface, surface);
+            // Both are rounded.
+            let along = flat.shading(&surface).uv;
+            assert!(
+                (struck.along - along).length() < 1e-3,
+                "{} {along}",
+                struck.along
+            );
+            met[struck.mesh] += 1;
+        }
+        assert!(met[0] > 200 && met[1] > 200, "{met:?}");
     }
 }

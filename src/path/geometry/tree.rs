@@ -38,6 +38,14 @@ pub(super) trait Leaves {
     fn any(&mut self, probe: &impl Probe, leaf: usize, limit: f32) -> bool;
 }
 
+/// What a ray meets: its place in a leaf, and its distance.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct InLeaf {
+    pub(super) leaf: usize,
+    pub(super) lane: usize,
+    pub(super) distance: f32,
+}
+
 /// The shapes of a leaf; [`NONE`] where there are fewer than eight.
 type Leaf = [u32; LANES];
 
@@ -150,7 +158,11 @@ impl Tree {
             leaves: &self.leaves,
             meet,
         };
-        self.nearest_in_leaves(ray, limit, &mut each)
+        let place = self.nearest_in_leaves(ray, limit, &mut each)?;
+        Some(Found {
+            shape: self.leaves[place.leaf][place.lane] as usize,
+            distance: place.distance,
+        })
     }
 
     /// Whether any of what is in the boxes is met before `limit`.
@@ -175,7 +187,7 @@ impl Tree {
         ray: &Ray,
         limit: f32,
         leaves: &mut impl Leaves,
-    ) -> Option<Found> {
+    ) -> Option<InLeaf> {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if let Some(simd) = self.simd {
             return simd.vectorize(
@@ -205,7 +217,7 @@ impl Tree {
         probe: &impl Probe,
         mut limit: f32,
         leaves: &mut impl Leaves,
-    ) -> Option<Found> {
+    ) -> Option<InLeaf> {
         let mut nearest = None;
         let mut stack = Stack::new();
         let mut next = Some(Child::ROOT);
@@ -226,8 +238,9 @@ impl Tree {
                 || stack.pop(limit),
             );
         }
-        nearest.map(|(leaf, lane)| Found {
-            shape: self.leaves[leaf][lane] as usize,
+        nearest.map(|(leaf, lane)| InLeaf {
+            leaf,
+            lane,
             distance: limit,
         })
     }

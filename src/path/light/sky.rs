@@ -1,5 +1,8 @@
 //! Pictures of what is around a scene.
 
+#[cfg(feature = "simd")]
+mod lanes;
+
 use core::f64::consts::PI;
 
 use glam::{DMat3, Mat3A, Vec3, Vec3A};
@@ -9,6 +12,9 @@ use crate::path::frame::{single, turn, turns};
 use crate::path::{Segment, Surface, color};
 use crate::warp::{Piecewise2d, Place};
 use crate::{Error, Sampler};
+
+#[cfg(feature = "simd")]
+pub(in crate::path) use lanes::Seen;
 
 /// Light from all around, by a picture of equal steps in latitude and longitude, interpolated linearly.
 ///
@@ -59,7 +65,8 @@ impl Sky {
         let weights: Vec<f64> = (0..rows * width)
             .map(|square| {
                 let (row, column) = (square / width, square % width);
-                let luminance = mean_luminance(corners(&pixels, width, row, column));
+                let luminance =
+                    mean_luminance(around(&pixels, width, row, column).map(|&p| Vec3A::from(p)));
                 f64::from(luminance) * solid_angle(row)
             })
             .collect();
@@ -83,23 +90,16 @@ impl Sky {
 
     /// The place that a direction has in the picture, and the sine of its angle to the zenith.
     #[inline]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "rounds down to a pixel"
-    )]
     fn place(&self, direction: Vec3A) -> (Square, f32) {
         let d = self.inward * direction;
         let sine = (d.x * d.x + d.z * d.z).sqrt();
         let longitude = turns(d.x, -d.z) - 0.5 / self.width as f32;
         let latitude = 2.0 * turns(sine, d.y);
-        let cells = |u: f32, count: usize| {
-            let place = u.clamp(0.0, 1.0 - f32::EPSILON / 2.0) * count as f32;
-            let cell = (place as usize).min(count - 1);
-            (cell, place - cell as f32)
-        };
-        let (column, s) = cells(longitude - longitude.floor(), self.width);
-        let (row, t) = cells(latitude, self.density.len());
+        let below_one = |u: f32| u.clamp(0.0, 1.0 - f32::EPSILON / 2.0);
+        let longitude = below_one(longitude - longitude.floor());
+        let (column, s) = cell(longitude * self.width as f32, self.width);
+        let rows = self.density.len();
+        let (row, t) = cell(below_one(latitude) * rows as f32, rows);
         let within = [s, t];
         let square = Square {
             column,
@@ -111,79 +111,33 @@ impl Sky {
 
     /// The direction of a place, and the sine of its angle to the zenith.
     #[inline]
-    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
     fn direction(&self, place: &Place) -> (Vec3A, f32) {
-        let [s, t] = place.within;
-        // Angles from the nearer pole keep their digits.
-        let (y, rows) = (place.row as f64 + t, self.density.len() as f64);
-        let [height, sine] = turn((0.5 * y.min(rows - y) / rows) as f32);
-        let cosine = if y + y < rows { height } else { -height };
-        let x = (place.column as f64 + s + 0.5) / self.width as f64;
-        let [against, along] = turn(single(if x < 1.0 { x } else { x - 1.0 }));
+        let (from_pole, upper, longitude) = self.angles(place);
+        let [height, sine] = turn(from_pole);
+        let cosine = if upper { height } else { -height };
+        let [against, along] = turn(longitude);
         let direction = Vec3A::new(along * sine, cosine, -against * sine);
         ((self.outward * direction).normalize(), sine)
     }
 
-    /// Draws a direction from each of `N` or fewer points, as many as `count`: told its number, `take` gets it, and the light from there
-    /// with its density, which is positive and finite.
+    /// The angle of a place to the nearer pole, where angles keep their digits, whether that is the zenith, and the longitude: in turns.
     #[inline]
-    pub(in crate::path) fn draw<const N: usize>(
-        &self,
-        points: &[[f64; 2]; N],
-        count: usize,
-        mut take: impl FnMut(usize, Vec3A, Emission),
-    ) {
-        let mut places = [Place::default(); N];
-        self.directions.locate(points, &mut places[..count]);
-        let squares = places.map(Square::from);
-        self.emissions(&squares, count, |k, corners| {
-            let (direction, sine) = self.direction(&places[k]);
-            let emission = self.emission(&squares[k], corners, sine);
-            if emission.density > 0.0 && emission.density < f32::INFINITY {
-                take(k, direction, emission);
-            }
-        });
-    }
-
-    /// What [`emitted`](Environment::emitted) gives for `N` or fewer directions, as many as `count`.
-    #[cfg(feature = "simd")]
-    #[inline]
-    pub(in crate::path) fn emit<const N: usize>(
-        &self,
-        directions: &[Vec3A; N],
-        count: usize,
-        mut take: impl FnMut(usize, Emission),
-    ) {
-        let (mut squares, mut sines) = ([Square::default(); N], [0.0; N]);
-        for (k, &direction) in directions[..count].iter().enumerate() {
-            (squares[k], sines[k]) = self.place(direction);
-        }
-        self.emissions(&squares, count, |k, corners| {
-            take(k, self.emission(&squares[k], corners, sines[k]));
-        });
-    }
-
-    /// The pixels around the first `count` squares: all of them are read before the first is used, so that what one waits for in memory
-    /// the others wait for at the same time.
-    #[inline]
-    fn emissions<const N: usize>(
-        &self,
-        squares: &[Square; N],
-        count: usize,
-        mut take: impl FnMut(usize, &[Vec3A; 4]),
-    ) {
-        let mut read = [[Vec3A::ZERO; 4]; N];
-        for (corners, square) in read.iter_mut().zip(&squares[..count]) {
-            *corners = self.corners(square);
-        }
-        for (k, corners) in read[..count].iter().enumerate() {
-            take(k, corners);
-        }
+    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+    fn angles(&self, place: &Place) -> (f32, bool, f32) {
+        let [s, t] = place.within;
+        let (y, rows) = (place.row as f64 + t, self.density.len() as f64);
+        let from_pole = (0.5 * y.min(rows - y) / rows) as f32;
+        let x = (place.column as f64 + s + 0.5) / self.width as f64;
+        (
+            from_pole,
+            y + y < rows,
+            single(if x < 1.0 { x } else { x - 1.0 }),
+        )
     }
 
     #[inline]
     fn corners(&self, square: &Square) -> [Vec3A; 4] {
-        corners(&self.pixels, self.width, square.row, square.column)
+        around(&self.pixels, self.width, square.row, square.column).map(|&p| Vec3A::from(p))
     }
 
     /// The light from a place in a square with the given pixels around it, whose angle to the zenith has the given sine. The density is
@@ -207,8 +161,20 @@ impl Sky {
     }
 }
 
+/// The cell of some that a place is in, and where in it.
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "rounds down to a pixel"
+)]
+fn cell(place: f32, count: usize) -> (usize, f32) {
+    let cell = (place as usize).min(count - 1);
+    (cell, place - cell as f32)
+}
+
 /// A square between four pixels, and a place in it, in `[0, 1]` each way.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Square {
     column: usize,
     row: usize,
@@ -229,10 +195,10 @@ impl From<Place> for Square {
 
 /// The pixels around a square: two above, two below.
 #[inline]
-fn corners(pixels: &[Vec3], width: usize, row: usize, column: usize) -> [Vec3A; 4] {
+fn around(pixels: &[Vec3], width: usize, row: usize, column: usize) -> [&Vec3; 4] {
     let next = if column + 1 == width { 0 } else { column + 1 };
     let [above, below] = [row, row + 1].map(|row| &pixels[row * width..][..width]);
-    [above[column], above[next], below[column], below[next]].map(Vec3A::from)
+    [&above[column], &above[next], &below[column], &below[next]]
 }
 
 /// The luminance of the mean of some pixels.
@@ -255,12 +221,13 @@ impl Environment for Sky {
 
     #[inline]
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
-        let mut drawn = None;
-        self.draw(&[u.next_2d()], 1, |_, direction, emission| {
-            drawn = Some((direction, emission));
-        });
-        let (direction, Emission { radiance, density }) = drawn?;
-        Some(Illumination {
+        let mut place = [Place::default()];
+        self.directions.locate(&[u.next_2d()], &mut place);
+        let [place] = place;
+        let square = Square::from(place);
+        let (direction, sine) = self.direction(&place);
+        let Emission { radiance, density } = self.emission(&square, &self.corners(&square), sine);
+        (density > 0.0 && density < f32::INFINITY).then(|| Illumination {
             way: Segment::along(from, direction),
             weight: radiance / density,
             density,

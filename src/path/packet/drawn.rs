@@ -1,6 +1,6 @@
 //! What paths draw one lane after the other.
 
-use glam::Vec3A;
+use glam::{Vec2, Vec3A};
 use pulp::Simd;
 
 use super::Single;
@@ -11,7 +11,7 @@ use crate::path::Surface;
 use crate::path::bsdf::Scattered;
 use crate::path::geometry::Hit;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
-use crate::path::light::{Emission, Illumination, Sky};
+use crate::path::light::{Emission, Illumination, Seen};
 use crate::path::segment::End;
 
 /// Weights and densities, and the directions they belong to where those were drawn.
@@ -74,51 +74,18 @@ impl Weights {
     }
 }
 
-/// Light of a sky, with the weight that it has: the radiance, over the density where it was drawn.
-pub(super) struct SkyLight(pub(super) Weights);
-
-impl SkyLight {
-    const NONE: Self = Self(Weights::NONE);
-
-    /// The radiance from the directions of the active lanes, and the density with which they are drawn.
-    #[inline(never)]
-    pub(super) fn emitted(sky: &Sky, directions: &[Row<f32>; 3], active: &Row<f32>) -> Self {
-        let mut light = Self::NONE;
-        let mut asked = [Vec3A::ZERO; WIDEST];
-        let (mut lanes, mut count) = ([0; WIDEST], 0);
-        for lane in (0..WIDEST).filter(|&lane| active.0[lane] > 0.0) {
-            (lanes[count], asked[count]) = (lane, Row::vector(directions, lane));
-            count += 1;
-        }
-        sky.emit(&asked, count, |k, Emission { radiance, density }| {
-            light.0.set(lanes[k], radiance, density);
-        });
-        light
-    }
-
-    /// Directions drawn from coordinates, in some lanes; the density is zero where nothing is to be drawn.
-    #[inline(never)]
-    pub(super) fn drawn(sky: &Sky, lanes: &[usize], coordinates: &[[f64; 2]; WIDEST]) -> Self {
-        let mut light = Self::NONE;
-        let take = |k: usize, direction, Emission { radiance, density }| {
-            Row::set_vector(&mut light.0.direction, lanes[k], direction);
-            light.0.set(lanes[k], radiance / density, density);
-        };
-        sky.draw(coordinates, lanes.len(), take);
-        light
-    }
-
+impl Seen {
     /// The way to the light.
     #[inline(always)]
     pub(super) fn lamp<S: Simd>(&self, simd: S, here: &Here<'_, S>, active: Mask<S>) -> Lamp<S> {
-        let density = self.0.density(simd);
+        let density = Real::load(simd, &self.density);
         let active = active & density.gt(Real::splat(simd, 0.0));
-        let into = self.0.direction(simd);
+        let into = Vector::load(simd, &self.direction);
         Lamp {
             start: here.place.leave(here.point, into),
             into,
             limit: Real::splat(simd, f32::INFINITY),
-            weight: self.0.weight(simd),
+            weight: Vector::load(simd, &self.radiance) / density,
             density: active.select(density, Real::splat(simd, 1.0)),
             active,
         }
@@ -223,7 +190,7 @@ pub(super) struct Draws {
     /// Light of the shapes and of what is around, where the view is asked for it.
     pub(super) lamp: Option<Illuminated>,
     pub(super) around: Option<Illuminated>,
-    pub(super) sky: Option<SkyLight>,
+    pub(super) sky: Option<Seen>,
     /// Where laws are not ideally diffuse.
     pub(super) scattered: Option<Scatters>,
 }
@@ -250,6 +217,7 @@ impl Hits<'_> {
                 detail: (),
             },
             triangle: self.names.triangle.0[lane] as usize,
+            along: Vec2::new(self.names.along[0].0[lane], self.names.along[1].0[lane]),
             copy: (self.names.copy.0[lane] as usize).checked_sub(1),
         }
     }

@@ -4,6 +4,7 @@ use core::f32::consts::FRAC_PI_4;
 
 use pulp::Simd;
 
+use crate::path::frame::lanes::eighth;
 use crate::path::lanes::{Real, Vector};
 
 /// The vector with the given coordinates in the [frame](crate::path::frame::Frame) around a normal.
@@ -34,9 +35,7 @@ pub(super) fn cosine_hemisphere<S: Simd>(u: Real<S>, v: Real<S>) -> Vector<S> {
     let wide = a.abs().gt(b.abs());
     let (radius, other) = (wide.select(a, b), wide.select(b, a));
     let angle = FRAC_PI_4 * other / radius.eq(zero).select(one, radius);
-    let x = angle * angle;
-    let cosine = 1.0 + x * (-0.5 + x * (1.0 / 24.0 + x * (-1.0 / 720.0 + x * (1.0 / 40320.0))));
-    let sine = angle * (1.0 + x * (-1.0 / 6.0 + x * (1.0 / 120.0 + x * (-1.0 / 5040.0))));
+    let [cosine, sine] = eighth(angle);
     Vector {
         x: radius * wide.select(cosine, sine),
         y: radius * wide.select(sine, cosine),

@@ -1,6 +1,6 @@
 //! All that is not flat, whose points are found one lane after the other.
 
-use glam::Vec3A;
+use glam::{Vec2, Vec3A};
 use pulp::Simd;
 
 use super::optics::Optics;
@@ -43,19 +43,24 @@ pub(super) struct Points {
 pub(super) struct Names {
     pub(super) part: Row<u32>,
     pub(super) triangle: Row<u32>,
+    /// The coordinates along its edges.
+    pub(super) along: [Row<f32>; 2],
     /// The number after it; 0 for none.
     pub(super) copy: Row<u32>,
 }
 
 impl Names {
+    const NONE: Self = Self {
+        part: Row::<u32>::ZERO,
+        triangle: Row::<u32>::ZERO,
+        along: [Row::<f32>::ZERO; 2],
+        copy: Row::<u32>::ZERO,
+    };
+
     /// Shapes.
     #[inline(always)]
     pub(super) fn shapes(part: Row<u32>) -> Self {
-        Self {
-            part,
-            triangle: Row::<u32>::ZERO,
-            copy: Row::<u32>::ZERO,
-        }
+        Self { part, ..Self::NONE }
     }
 }
 
@@ -70,11 +75,7 @@ impl Points {
         kind: Row::<f32>::ZERO,
         inner: Row::<f32>::ZERO,
         chance: Row::<f32>::ZERO,
-        names: Names {
-            part: Row::<u32>::ZERO,
-            triangle: Row::<u32>::ZERO,
-            copy: Row::<u32>::ZERO,
-        },
+        names: Names::NONE,
     };
 
     #[inline(always)]
@@ -95,6 +96,8 @@ impl Points {
         self.chance.0[lane] = optics.emitted.chance();
         self.names.part.0[lane] = hit.part as u32;
         self.names.triangle.0[lane] = hit.triangle as u32;
+        self.names.along[0].0[lane] = hit.along.x;
+        self.names.along[1].0[lane] = hit.along.y;
         self.names.copy.0[lane] = hit.copy.map_or(0, |copy| copy as u32 + 1);
     }
 
@@ -109,6 +112,8 @@ impl Points {
         for lane in (0..WIDEST).filter(|&lane| self.met.0[lane] > 0.0) {
             names.part.0[lane] = self.names.part.0[lane];
             names.triangle.0[lane] = self.names.triangle.0[lane];
+            names.along[0].0[lane] = self.names.along[0].0[lane];
+            names.along[1].0[lane] = self.names.along[1].0[lane];
             names.copy.0[lane] = self.names.copy.0[lane];
         }
     }
@@ -208,6 +213,7 @@ impl Solids {
                     part: *part,
                     surface: sphere.surface(&ray, limit),
                     triangle: 0,
+                    along: Vec2::ZERO,
                     copy: None,
                 };
                 points.set(lane, &self.optics[*part], &hit, hit.surface.normal);

@@ -7,7 +7,7 @@ use core::f32::consts::FRAC_1_PI;
 use glam::{Vec3, Vec3A};
 use pulp::{Simd, WithSimd};
 
-use super::drawn::{Draws, Hits, Illuminated, Scatters, SkyLight, Weights};
+use super::drawn::{Draws, Hits, Illuminated, Scatters, Weights};
 use super::lamp::Lamp;
 use super::math::{around, cosine_hemisphere, power};
 use super::optics::{DELTA, OTHER};
@@ -165,12 +165,20 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         if sky.is_some() || asks_around {
             if missed.any() {
                 let (directions, lanes) = (&state.direction, &missed.row(simd));
-                let light = match sky {
-                    Some(sky) => SkyLight::emitted(sky, directions, lanes).0,
-                    None => Weights::background(self.single, directions, lanes),
+                let (emitted, other) = match sky {
+                    Some(sky) => {
+                        let seen = sky.emitted_in_lanes(packet.arch, directions, lanes);
+                        (
+                            Vector::load(simd, &seen.radiance),
+                            Real::load(simd, &seen.density),
+                        )
+                    }
+                    None => {
+                        let light = Weights::background(self.single, directions, lanes);
+                        (light.weight(simd), light.density(simd))
+                    }
                 };
-                let other = light.density(simd);
-                let sum = radiance + throughput * light.weight(simd) * power(density, other);
+                let sum = radiance + throughput * emitted * power(density, other);
                 radiance = missed.choose(sum, radiance);
             }
         } else if others {

@@ -90,11 +90,14 @@ impl Flat {
         let normal = (cross / squared.sqrt()).as_vec3a();
         let first_dual = (second.cross(cross) / squared).as_vec3a();
         let second_dual = (cross.cross(first) / squared).as_vec3a();
-        let extent = corner.abs() + first_edge.abs() + second_edge.abs();
-        // The point is rounded twice, the normal and the ray's way back to the plane a few times more.
-        let margin = gamma(8) * normal.abs().dot(extent);
-        let slack = [first_dual, second_dual].map(|dual| gamma(4) * dual.abs().dot(extent));
-        let inset = slack.map(|slack| (4.0 * slack).min(0.25));
+        let edges = Edges {
+            corner,
+            first: first_edge,
+            second: second_edge,
+        };
+        let margin = edges.margin(normal);
+        let slack = [first_dual, second_dual].map(|dual| gamma(4) * dual.abs().dot(edges.extent()));
+        let inset = inset(slack);
         let area = squared.sqrt() * if slant == 0.0 { 1.0 } else { 0.5 };
         let usable = squared > 0.0
             && (corner + first_edge + second_edge).is_finite()
@@ -189,7 +192,7 @@ impl Flat {
 
     /// The coordinates of a point along the edges, in the order that they had before any turning.
     #[inline]
-    pub(super) fn along(&self, surface: &Surface) -> Vec2 {
+    fn along(&self, surface: &Surface) -> Vec2 {
         let inside = surface.point - self.corner;
         let along = Vec2::new(inside.dot(self.first_dual), inside.dot(self.second_dual));
         if self.turned { along.yx() } else { along }
@@ -244,6 +247,44 @@ impl Flat {
     }
 }
 
+/// Where a triangle or parallelogram is.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::path) struct Edges {
+    pub(in crate::path) corner: Vec3A,
+    pub(in crate::path) first: Vec3A,
+    pub(in crate::path) second: Vec3A,
+}
+
+impl Edges {
+    #[inline]
+    fn extent(&self) -> Vec3A {
+        self.corner.abs() + self.first.abs() + self.second.abs()
+    }
+
+    /// The margin of its points: each is rounded twice, the normal and a ray's way back to the plane a few times more.
+    #[inline]
+    pub(in crate::path) fn margin(&self, normal: Vec3A) -> f32 {
+        gamma(8) * normal.abs().dot(self.extent())
+    }
+}
+
+/// How far inside its edges points of a shape are kept, whose rays find coordinates up to `slack` outside.
+#[inline]
+pub(in crate::path) fn inset(slack: [f32; 2]) -> [f32; 2] {
+    slack.map(|slack| (4.0 * slack).min(0.25))
+}
+
+/// Coordinates along the edges, brought back inside.
+#[inline]
+pub(in crate::path) fn kept_inside([s, t]: [f32; 2], inset: [f32; 2], slant: f32) -> [f32; 2] {
+    let [low_s, low_t] = inset;
+    let s = s.clamp(low_s, 1.0 - low_s);
+    let t = t.clamp(low_t, 1.0 - low_t);
+    // Past the slanted edge of a triangle: back towards the corner.
+    let beyond = (slant * (s + t) + low_s.max(low_t)).max(1.0);
+    [s / beyond, t / beyond]
+}
+
 #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
 fn single(x: f64) -> f32 {
     x as f32
@@ -287,12 +328,9 @@ impl Shape for Flat {
     #[inline]
     fn surface(&self, ray: &Ray, distance: f32) -> Surface {
         let inside = ray.direction * distance - (self.corner - ray.origin);
-        let [low_s, low_t] = self.inset;
-        let s = inside.dot(self.first_dual).clamp(low_s, 1.0 - low_s);
-        let t = inside.dot(self.second_dual).clamp(low_t, 1.0 - low_t);
-        // Past the slanted edge of a triangle: back towards the corner.
-        let beyond = (self.slant * (s + t) + low_s.max(low_t)).max(1.0);
-        self.at(s / beyond, t / beyond)
+        let along = [inside.dot(self.first_dual), inside.dot(self.second_dual)];
+        let [s, t] = kept_inside(along, self.inset, self.slant);
+        self.at(s, t)
     }
 
     /// The texture coordinates are those along the edges.

@@ -2,10 +2,10 @@
 
 use glam::{Vec2, Vec3A};
 
-use super::{Flat, Shape};
+use super::{Edges, Flat};
 use crate::Error;
 use crate::path::geometry::around;
-use crate::path::{Shading, Surface};
+use crate::path::{Facet, Shading};
 
 /// Triangles that share vertices, with or without normals and texture coordinates at them.
 ///
@@ -145,6 +145,23 @@ impl Mesh {
         if self.turned { flat.turned() } else { flat }
     }
 
+    /// Where a triangle is, as it was before any turning.
+    #[inline]
+    pub(in crate::path) fn edges(&self, triangle: usize) -> Edges {
+        let [corner, second, third] =
+            self.triangles[triangle].map(|index| Vec3A::from(self.positions[index as usize]));
+        Edges {
+            corner,
+            first: second - corner,
+            second: third - corner,
+        }
+    }
+
+    /// Whether the outer side is that of clockwise corners.
+    pub(in crate::path) const fn is_turned(&self) -> bool {
+        self.turned
+    }
+
     /// The texture coordinates at the corners of a triangle.
     pub(in crate::path) fn uvs(&self, triangle: usize) -> [Vec2; 3] {
         if self.uvs.is_empty() {
@@ -153,45 +170,44 @@ impl Mesh {
         self.triangles[triangle].map(|index| Vec2::from(self.uvs[index as usize]))
     }
 
-    /// The parametrisation at a point of a triangle, of which `flat` is the shape.
-    pub(in crate::path) fn shading(
-        &self,
-        triangle: usize,
-        flat: &Flat,
-        surface: &Surface,
-    ) -> Shading {
-        let plain = flat.shading(surface);
-        let [s, t] = plain.uv.to_array();
-        let mut shading = plain;
-        shading.facet.triangle = match self.numbers.get(triangle) {
-            Some(&number) => number,
-            None => number(triangle),
+    /// The parametrisation at the point of a triangle with the coordinates `along` its edges; the triangle has the normal `plain`.
+    pub(in crate::path) fn shading(&self, triangle: usize, plain: Vec3A, along: Vec2) -> Shading {
+        let Edges {
+            first: du,
+            second: dv,
+            ..
+        } = self.edges(triangle);
+        let facet = Facet {
+            triangle: match self.numbers.get(triangle) {
+                Some(&number) => number,
+                None => number(triangle),
+            },
+            along,
         };
-        shading.normal = self.normal_along(triangle, flat, plain.uv);
+        let mut shading = Shading {
+            uv: along,
+            normal: self.normal(triangle, plain, along),
+            du,
+            dv,
+            facet,
+        };
         if !self.uvs.is_empty() {
             let [a, b, c] = self.uvs(triangle);
             let (first, second) = (b - a, c - a);
-            shading.uv = a + first * s + second * t;
+            shading.uv = a + first * along.x + second * along.y;
             let area = first.perp_dot(second);
             let inverse = if area == 0.0 { 0.0 } else { area.recip() };
-            shading.du = (plain.du * second.y - plain.dv * first.y) * inverse;
-            shading.dv = (plain.dv * first.x - plain.du * second.x) * inverse;
+            shading.du = (du * second.y - dv * first.y) * inverse;
+            shading.dv = (dv * first.x - du * second.x) * inverse;
         }
         shading
     }
 
-    /// The normal that light is scattered by at a point of a triangle.
-    #[cfg(feature = "simd")]
+    /// The normal that light is scattered by there.
     #[inline]
-    pub(in crate::path) fn normal(&self, triangle: usize, flat: &Flat, surface: &Surface) -> Vec3A {
-        self.normal_along(triangle, flat, flat.along(surface))
-    }
-
-    /// The same at the coordinates along its edges.
-    #[inline]
-    fn normal_along(&self, triangle: usize, flat: &Flat, along: Vec2) -> Vec3A {
+    pub(in crate::path) fn normal(&self, triangle: usize, plain: Vec3A, along: Vec2) -> Vec3A {
         if self.normals.is_empty() {
-            return flat.normal;
+            return plain;
         }
         let [s, t] = along.to_array();
         let [a, b, c] =
@@ -199,7 +215,7 @@ impl Mesh {
         let side = if self.turned { -1.0 } else { 1.0 };
         let normal = (a * (1.0 - s - t) + (b * s + c * t)) * side;
         // Normals that cancel one another say nothing.
-        normal.try_normalize().unwrap_or(flat.normal)
+        normal.try_normalize().unwrap_or(plain)
     }
 
     fn one_each(&self, name: &'static str, count: usize) -> Result<(), Error> {

@@ -6,7 +6,7 @@ use super::{State, Walk};
 use crate::Sampler;
 use crate::path::frame::single;
 use crate::path::lanes::{Mask, Real, Row, WIDEST};
-use crate::path::packet::drawn::{Draws, Hits, SkyLight};
+use crate::path::packet::drawn::{Draws, Hits};
 use crate::path::packet::optics::DELTA;
 
 impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
@@ -56,7 +56,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             }
         }
         if let Some(sky) = self.sky {
-            draws.sky = Some(SkyLight::drawn(sky, &lanes[..count], &coordinates));
+            draws.sky = Some(sky.drawn_in_lanes(self.packet.arch, &lanes[..count], &coordinates));
         }
         u.map(|row| Real::load(simd, &row))
     }

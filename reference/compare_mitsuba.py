@@ -2,7 +2,7 @@
 
     pip install -r requirements.txt
     cargo build --release --all-features --example render
-    DRJIT_LIBLLVM_PATH=... python3 compare_mitsuba.py [-D name=value]... [--points SET] [--spp N]... [--runs R] SCENE.xml...
+    DRJIT_LIBLLVM_PATH=... python3 compare_mitsuba.py [-D name=value]... [--points SET] [--adaptive] [--spp N]... [--runs R] SCENE.xml...
 
 Mitsuba runs its fastest variant for processors, `llvm_ad_rgb`, with each of `SAMPLERS`; the scene's own sampler is
 replaced. The first render compiles: its time, loading included, is `cold`, and counts for nothing else. Then for every number of
@@ -12,7 +12,7 @@ behind them; ours are of rendering alone, as Mitsuba's are, and loading is told 
 The error is that of the pixels' means over seeds, from the differences of all pairs of runs: `mse x spp` is the mean over pixels and
 channels of the squared difference, halved, times the samples. It sees noise and no bias; so `apart` is the difference of
 the mean colours of both programs in standard errors, to be below about 3. An efficiency is 1 / (mse x seconds). The
-last column is ours over that of Mitsuba's better sampler at the same number of samples.
+last line is ours over that of Mitsuba's better sampler at the same number of samples.
 """
 
 import argparse
@@ -73,9 +73,11 @@ class Mitsuba:
 class Ours:
     """The same scene in the program `render`."""
 
-    def __init__(self, file: Path, program: Path, points: str, values: dict[str, str]):
-        self.name = f"ours {points}"
+    def __init__(self, file: Path, program: Path, points: str, values: dict[str, str], adaptive: bool):
+        self.name = f"ours {points}" + (", adaptive" if adaptive else "")
         self.command = [program, file, "--points", points, "--replicates", "1", "--json", "-"]
+        if adaptive:
+            self.command.append("--adaptive")
         for name, value in values.items():
             self.command += ["-D", f"{name}={value}"]
         self.load = self.cold = 0.0
@@ -114,10 +116,11 @@ def apart(ours: list[np.ndarray], theirs: list[np.ndarray]) -> float:
 
 def compare(file: Path, options: argparse.Namespace) -> None:
     values = dict(options.values)
-    ours = Ours(file, options.program, options.points, values)
-    programs = [ours, *(Mitsuba(file, sampler, values) for sampler in SAMPLERS)]
+    kinds = [False, True] if options.adaptive else [False]
+    ours = [Ours(file, options.program, options.points, values, adaptive) for adaptive in kinds]
+    programs = [*ours, *(Mitsuba(file, sampler, values) for sampler in SAMPLERS)]
     print(f"\n{file.name}")
-    print(f"{'':22} {'spp':>5} {'M paths/s':>22} {'seconds':>22} {'rmse':>9} {'mse x spp':>10} {'efficiency':>11} {'apart':>6}")
+    print(f"{'':28} {'spp':>5} {'M paths/s':>22} {'seconds':>22} {'rmse':>9} {'mse x spp':>10} {'efficiency':>11} {'apart':>6}")
     for spp in options.spp:
         times = {program.name: [] for program in programs}
         images = {program.name: [] for program in programs}
@@ -134,12 +137,14 @@ def compare(file: Path, options: argparse.Namespace) -> None:
             rates = spread([paths / s * 1e-6 for s in seconds], 2)
             distance = "" if program is programs[0] else f"{apart(images[programs[0].name], pictures):.1f}"
             print(
-                f"{program.name:22} {spp:5} {rates:>22} {spread(seconds, 3):>22} {mse**0.5:9.5f} {mse * spp:10.5f}"
+                f"{program.name:28} {spp:5} {rates:>22} {spread(seconds, 3):>22} {mse**0.5:9.5f} {mse * spp:10.5f}"
                 f" {efficiencies[-1]:11.3g} {distance:>6}"
             )
-        print(f"{'ratio of efficiency':22} {spp:5} {efficiencies[0] / max(efficiencies[1:]):.2f}")
+        best = max(efficiencies[len(ours) :])
+        ratios = ", ".join(f"{efficiency / best:.2f}" for efficiency in efficiencies[: len(ours)])
+        print(f"{'ratio of efficiency':28} {spp:5} {ratios}")
     for program in programs:
-        print(f"{program.name:22} loaded in {program.load:.2f} s, cold {program.cold:.2f} s")
+        print(f"{program.name:28} loaded in {program.load:.2f} s, cold {program.cold:.2f} s")
 
 
 def assignment(text: str) -> tuple[str, str]:
@@ -155,6 +160,7 @@ def main() -> None:
     parser.add_argument("-D", dest="values", type=assignment, action="append", default=[], metavar="NAME=VALUE",
                         help="gives a parameter of the scenes a value")
     parser.add_argument("--points", default="sobol")
+    parser.add_argument("--adaptive", action="store_true", help="renders with ours dealing samples to the pixels as well")
     parser.add_argument("--spp", type=int, action="append")
     parser.add_argument("--runs", type=int, default=5)
     program = Path(__file__).parent.parent / "target/release/examples/render"

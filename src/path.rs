@@ -32,7 +32,7 @@
 //! | [`Paths::radiance`] | the rendering equation |
 //! | [`Recursive`] | the same as it is taught, to be compared with |
 //! | [`View::learn_roulette`] | paths that end where it pays |
-//! | [`Adaptive`] | more samples where the picture needs them |
+//! | [`Adaptive`], [`Allocation`] | more samples where the picture needs them |
 //! | [`Image`] | pictures, their errors, their files |
 //! | [`scenes`] | the Cornell box and others, as `reference/scenes` has them for Mitsuba |
 //!
@@ -77,7 +77,7 @@ mod shading;
 pub mod shape;
 pub mod texture;
 
-pub use adaptive::{Adapted, Adaptive};
+pub use adaptive::{Adapted, Adaptive, Allocation};
 pub use frame::Frame;
 pub use image::Image;
 pub use object::{Instances, Object};

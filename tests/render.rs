@@ -14,7 +14,9 @@ use estimand::path::light::{AreaLights, Environment, Light, NoEnvironment};
 use estimand::path::scenes::{self, CORNELL_LIGHT};
 use estimand::path::sensor::{Pinhole, Sensor};
 use estimand::path::{Adaptive, Direct, Ending, Image, Recursive, View};
-use estimand::points::{Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Sobol, Stratified};
+use estimand::points::{
+    Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Rescrambled, Sobol, Stratified,
+};
 use estimand::{Average, Estimator, MonteCarlo};
 
 fn reference(name: &'static str, size: usize, samples: u64) -> Reference {
@@ -145,18 +147,38 @@ fn recursion() {
         .check();
 }
 
-/// The samples that decide how many more there are have no say in their own number. Few of them, so that a bias would be
+/// The samples that decide how many there are have no say in their own number. Few of them, so that a bias would be
 /// large.
 #[test]
 fn adaptive_samples() {
     let view = scenes::cornell_box();
     let adaptive = Adaptive::new(12, 4).unwrap();
     let ours = Batches::new(32, 12, |batch| {
-        let adapted = view.render_adaptive([128; 2], hash(14, batch), adaptive);
+        let plain = |key, count| MonteCarlo::new(count, key);
+        let adapted = view.render_adaptive([128; 2], hash(14, batch), adaptive, plain);
         adapted.unwrap().image
     });
     reference("cornell_box", 128, 4 * 32768)
         .compare(&ours, "adaptive")
+        .check();
+}
+
+/// Nets whose number a pilot decides. Few points again.
+#[test]
+fn adaptive_nets() {
+    let (view, size) = (scenes::cornell_box(), [128; 2]);
+    let ours = Batches::new(32, 12, |batch| {
+        let pilot = view.allocate(size, hash(20, batch), 4).unwrap();
+        let counts = pilot.powers(8, 2);
+        Image::of_pixels(size, hash(21, batch), |[x, y], key| {
+            let count = counts[(y * size[0] + x) as usize];
+            let points: Box<dyn PointSet> = Box::new(Rescrambled::new(4, key)?);
+            Average::new(points, count).estimate(&view.pixel([x, y], size))
+        })
+        .unwrap()
+    });
+    reference("cornell_box", 128, 4 * 32768)
+        .compare(&ours, "adaptive-nets")
         .check();
 }
 

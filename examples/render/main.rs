@@ -1,6 +1,5 @@
 //! Renders scene files of Mitsuba 3.
 
-mod adaptive;
 mod checkpoint;
 mod output;
 mod plan;
@@ -46,9 +45,9 @@ struct Arguments {
     /// Stops when the root-mean-square error of the pixels, as it is estimated, is below this part of the mean
     #[arg(long, value_name = "RELATIVE_ERROR", group = "length", value_parser = positive)]
     noise: Option<f64>,
-    /// The points of the pixels
-    #[arg(long, value_enum, value_name = "SET", default_value_t = Points::BlueNoise)]
-    points: Points,
+    /// The points of the pixels; blue-noise is the default, and rescrambled with --adaptive
+    #[arg(long, value_enum, value_name = "SET")]
+    points: Option<Points>,
     /// Into how many independent renders the samples of --spp are split; their spread gives the error.
     /// The default is 2, and 16 with --std-error
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
@@ -68,9 +67,9 @@ struct Arguments {
     /// A picture to compare with
     #[arg(long, value_name = "FILE.exr")]
     reference: Option<PathBuf>,
-    /// Takes more samples where the picture varies more: independent ones, --spp of them in the mean. The picture is rendered at
-    /// once: Ctrl-C ends it with nothing written
-    #[arg(long, conflicts_with_all = ["time", "noise", "points", "replicates", "checkpoint"])]
+    /// Takes more samples where the picture varies more, as a pilot of independent ones shows; of --spp, an eighth goes to the pilot, from 2
+    /// to 16, which is no part of the picture. With --time and --noise it is 8
+    #[arg(long)]
     adaptive: bool,
     /// Ends paths by Russian roulette as a pilot of so many paths a pixel, in at most 128 x 128 pixels and twice over, shows that it pays
     /// with independent points; others may lose by it. Takes the place of `rr_depth`; its time is told apart, as that of loading is
@@ -85,6 +84,20 @@ struct Arguments {
     /// Writes what was done as JSON; `-` for the standard output
     #[arg(long, value_name = "FILE|-")]
     json: Option<PathBuf>,
+}
+
+impl Arguments {
+    /// The points that are asked for.
+    fn points(&self) -> Result<Points, &'static str> {
+        match (self.points, self.adaptive) {
+            (Some(Points::BlueNoise), true) => Err(
+                "blue noise has as many points in every pixel: take other --points with --adaptive",
+            ),
+            (Some(points), _) => Ok(points),
+            (None, false) => Ok(Points::BlueNoise),
+            (None, true) => Ok(Points::Rescrambled),
+        }
+    }
 }
 
 /// The exit code after Ctrl-C, as shells have it.
@@ -110,14 +123,13 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     use_threads(arguments.threads)?;
     output::check(arguments)?;
+    let points = arguments.points()?;
     let reference = arguments
         .reference
         .as_ref()
         .map(Image::read_exr)
         .transpose()?;
-    if !arguments.adaptive {
-        ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed))?;
-    }
+    ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed))?;
 
     let start = Instant::now();
     let overrides: Vec<_> = arguments
@@ -152,32 +164,26 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let pilot_seconds = start.elapsed().as_secs_f64();
 
     let of_the_file = description.sensors[0].sampler.sample_count.into();
-    let plan = Plan::new(arguments, of_the_file);
+    let plan = Plan::new(arguments, points, of_the_file)?;
     let checkpoint = arguments.checkpoint.as_deref().map(|file| {
         Checkpoint::new(
             file,
             &format!(
-                "{description:?} {plan:?} {} {} {:?}",
-                arguments.points, arguments.seed, arguments.learn_roulette
+                "{description:?} {plan:?} {points} {} {:?}",
+                arguments.seed, arguments.learn_roulette
             ),
         )
     });
     let job = Job {
         picture: &*loaded.picture,
         size: loaded.size,
-        points: match arguments.adaptive {
-            true => Points::Independent,
-            false => arguments.points,
-        },
+        points,
         seed: arguments.seed,
         plan,
         checkpoint: checkpoint.as_ref(),
         stop: &STOP,
     };
-    let work = match arguments.adaptive {
-        true => adaptive::run(&job, arguments.spp.unwrap_or(of_the_file))?,
-        false => Work::of(&job.run()?)?,
-    };
+    let work = Work::of(&job.run()?)?;
     output::write(
         arguments,
         &Report {

@@ -115,6 +115,7 @@ fn figures(
         "width": job.size[0],
         "height": job.size[1],
         "spp": work.paths as f64 / pixels,
+        "pilot_spp": job.plan.pilot,
         "paths": work.paths,
         "seconds": work.seconds,
         "load_seconds": report.load_seconds,

@@ -3,11 +3,19 @@
 use std::time::Duration;
 
 use crate::Arguments;
+use crate::points::Points;
 
 /// How many samples there are, in which passes over the picture. Each pass has points of its own; the spread between passes
 /// gives the error.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Plan {
+pub(crate) struct Plan {
+    passes: Passes,
+    /// Samples of a pixel that decide beforehand how the others are dealt to the pixels; 0 if they are not.
+    pub(crate) pilot: u64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Passes {
     /// Passes of the given numbers of samples.
     Samples(Vec<u64>),
     /// Passes that double, until the time is over.
@@ -19,18 +27,39 @@ pub(crate) enum Plan {
 /// The most samples of a pass where their number is not known beforehand.
 const MOST: u64 = 64;
 
+/// Samples of a pixel in a pilot where their number is not known beforehand.
+const PILOT: u64 = 8;
+
 /// The fewest passes that tell of an error.
 const FEWEST: u64 = 4;
 
 impl Plan {
-    pub(crate) fn new(arguments: &Arguments, of_the_file: u64) -> Self {
+    pub(crate) fn new(
+        arguments: &Arguments,
+        points: Points,
+        of_the_file: u64,
+    ) -> Result<Self, String> {
+        let adaptive = |pilot| if arguments.adaptive { pilot } else { 0 };
         if let Some(seconds) = arguments.time {
-            return Self::Time(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
+            return Ok(Self {
+                passes: Passes::Time(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)),
+                pilot: adaptive(PILOT),
+            });
         }
         if let Some(noise) = arguments.noise {
-            return Self::Noise(noise);
+            return Ok(Self {
+                passes: Passes::Noise(noise),
+                pilot: adaptive(PILOT),
+            });
         }
         let spp = arguments.spp.unwrap_or(of_the_file);
+        let pilot = adaptive((spp / 8).clamp(2, 2 * PILOT));
+        if spp <= pilot {
+            return Err(format!(
+                "--adaptive needs more than {pilot} samples a pixel, not {spp}"
+            ));
+        }
+        let spp = spp - pilot;
         let replicates = arguments.replicates.unwrap_or(match arguments.std_error {
             Some(_) => 16,
             None => 2,
@@ -38,35 +67,46 @@ impl Plan {
         let replicates = replicates.min(spp);
         let of_replicate = |number: u64| spp / replicates + u64::from(number < spp % replicates);
         let samples = (0..replicates).map(of_replicate);
-        Self::Samples(match arguments.points.are_powers_of_two() {
-            true => samples.flat_map(powers).collect(),
-            false => samples.collect(),
+        Ok(Self {
+            passes: Passes::Samples(match points.are_powers_of_two() {
+                true => samples.flat_map(powers).collect(),
+                false => samples.collect(),
+            }),
+            pilot,
         })
     }
 
+    /// Whether there is time left after so much.
+    pub(crate) fn has_time(&self, spent: Duration) -> bool {
+        match &self.passes {
+            Passes::Time(time) => spent < *time,
+            Passes::Samples(_) | Passes::Noise(_) => true,
+        }
+    }
+
     /// How many samples the next pass has; `None` if there is none. `done` is how many samples there are in `passes` passes
-    /// that took `seconds` so far, and `noise` their error relative to the mean.
+    /// that took `rendering` of the `seconds` so far, and `noise` their error relative to the mean.
     pub(crate) fn next(
         &self,
         passes: u64,
         done: u64,
-        seconds: f64,
+        [seconds, rendering]: [f64; 2],
         noise: Option<f64>,
     ) -> Option<u64> {
         // A power of two, so that passes are nets.
         let doubled = 1 << done.clamp(1, MOST).ilog2();
-        match self {
-            Self::Samples(samples) => samples.get(usize::try_from(passes).ok()?).copied(),
-            Self::Noise(target) => {
+        match &self.passes {
+            Passes::Samples(samples) => samples.get(usize::try_from(passes).ok()?).copied(),
+            Passes::Noise(target) => {
                 let reached = passes >= FEWEST && noise.is_some_and(|noise| noise <= *target);
                 (!reached).then_some(doubled)
             }
-            Self::Time(time) => {
+            Passes::Time(time) => {
                 let left = time.as_secs_f64() - seconds;
                 if passes == 0 {
                     return Some(1);
                 }
-                let fitting = left * done as f64 / seconds.max(1e-9);
+                let fitting = left * done as f64 / rendering.max(1e-9);
                 let mut samples = doubled;
                 while samples > 1 && samples as f64 > fitting {
                     samples /= 2;
@@ -78,10 +118,10 @@ impl Plan {
 
     /// How much of the work is done, in `[0, 1]`, if that can be told.
     pub(crate) fn fraction(&self, done: f64, seconds: f64, noise: Option<f64>) -> Option<f64> {
-        let fraction = match self {
-            Self::Samples(samples) => done / samples.iter().sum::<u64>() as f64,
-            Self::Time(time) => seconds / time.as_secs_f64(),
-            Self::Noise(target) => (target / noise?).powi(2),
+        let fraction = match &self.passes {
+            Passes::Samples(samples) => done / samples.iter().sum::<u64>() as f64,
+            Passes::Time(time) => seconds / time.as_secs_f64(),
+            Passes::Noise(target) => (target / noise?).powi(2),
         };
         Some(fraction.clamp(0.0, 1.0))
     }

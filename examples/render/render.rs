@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use estimand::mitsuba::Picture;
+use estimand::points::PointSet;
 use estimand::{each, hash};
 
 use crate::checkpoint::Checkpoint;
@@ -20,6 +21,9 @@ const TICK: Duration = Duration::from_millis(100);
 /// How often work is saved at most, and how many times longer than saving it must have gone on.
 const SAVE: Duration = Duration::from_secs(5);
 const SAVE_RATIO: u32 = 20;
+
+/// Tells the seed of the pilot from that of the picture.
+const DEALING: u64 = 0x6465_616c;
 
 /// A picture to be rendered.
 pub(crate) struct Job<'a> {
@@ -65,19 +69,28 @@ impl Job<'_> {
     fn passes(&self, state: &Mutex<State>) -> Result<(), String> {
         let before = lock(state).seconds;
         let start = Instant::now();
+        // How a pass of so many samples is dealt.
+        let mut dealt: Option<(u64, Counts)> = None;
         while !self.stop.load(Ordering::Relaxed) {
             let (pass, samples) = {
                 let state = lock(state);
-                let next =
-                    self.plan
-                        .next(state.passes, state.samples, state.seconds, state.noise());
-                let Some(samples) = next else {
+                let Some(samples) = self.next(&state) else {
                     return Ok(());
                 };
                 (state.passes, samples)
             };
+            let done = self.look(state)?;
+            lock(state).seconds = before + start.elapsed().as_secs_f64();
+            if !done {
+                break;
+            }
             let seed = hash::hash(self.seed, pass);
-            let rows = each(self.size[1].into(), |y| self.row(y, seed, samples, state));
+            let counts = match dealt {
+                Some((mean, counts)) if mean == samples => counts,
+                _ => self.counts(state, samples)?,
+            };
+            let rows = each(self.size[1].into(), |y| self.row(y, seed, &counts, state));
+            dealt = Some((samples, counts));
             lock(state).seconds = before + start.elapsed().as_secs_f64();
             if rows
                 .into_iter()
@@ -91,8 +104,57 @@ impl Job<'_> {
         Ok(())
     }
 
+    /// Has a pilot tell how samples are dealt to the pixels, if the plan has one and it has not told before. Says whether it is done: somebody
+    /// may stop it. It is an error if the time is over before.
+    fn look(&self, state: &Mutex<State>) -> Result<bool, String> {
+        let count = self.plan.pilot;
+        if count == 0 || lock(state).allocation.is_some() {
+            return Ok(true);
+        }
+        let start = Instant::now();
+        let seed = hash::hash(self.seed, DEALING);
+        let proceed = |_| !self.stop.load(Ordering::Relaxed) && self.plan.has_time(start.elapsed());
+        let allocation = (self.picture)
+            .allocate_while(self.size, seed, count, &proceed)
+            .map_err(|e| e.to_string())?;
+        let done = allocation.is_some();
+        lock(state).look(allocation, count, start.elapsed());
+        match done || self.stop.load(Ordering::Relaxed) {
+            true => Ok(done),
+            false => Err("the time is too short for the pilot of --adaptive".to_owned()),
+        }
+    }
+
+    /// How many samples each pixel gets in a pass that has so many in the mean.
+    fn counts(&self, state: &Mutex<State>, samples: u64) -> Result<Counts, String> {
+        let some = self.points.of_pixel([0, 0], self.seed, samples);
+        let radix = some.map_err(|e| e.to_string())?.radix();
+        Ok(match (&lock(state).allocation, radix) {
+            (None, _) => Counts::Same(samples),
+            (Some(allocation), Some(radix)) => Counts::Each(allocation.powers(samples, radix)),
+            (Some(allocation), None) => Counts::Each(allocation.counts(samples)),
+        })
+    }
+
+    /// How many samples the next pass has.
+    fn next(&self, state: &State) -> Option<u64> {
+        let rendering = state.seconds - state.pilot_seconds;
+        self.plan.next(
+            state.passes,
+            state.samples,
+            [state.seconds, rendering],
+            state.noise(),
+        )
+    }
+
     /// Renders a row of a pass, unless it is there or somebody stops it. Says whether it is there.
-    fn row(&self, y: u64, seed: u64, samples: u64, state: &Mutex<State>) -> Result<bool, String> {
+    fn row(
+        &self,
+        y: u64,
+        seed: u64,
+        counts: &Counts,
+        state: &Mutex<State>,
+    ) -> Result<bool, String> {
         let at = usize::try_from(y).map_err(|e| e.to_string())?;
         if lock(state).has(at) {
             return Ok(true);
@@ -104,6 +166,7 @@ impl Job<'_> {
                 return Ok(false);
             }
             let position = [x, y];
+            let samples = counts.of(position, self.size);
             let points = self
                 .points
                 .of_pixel(position, seed, samples)
@@ -131,9 +194,7 @@ impl Job<'_> {
             let seconds = before + start.elapsed().as_secs_f64();
             {
                 let state = lock(state);
-                let next =
-                    self.plan
-                        .next(state.passes, state.samples, state.seconds, state.noise());
+                let next = self.next(&state);
                 let done = state.samples as f64 + state.part() * next.unwrap_or(0) as f64;
                 let fraction = self.plan.fraction(done, seconds, state.noise());
                 progress.show(fraction, state.paths, seconds, state.noise());
@@ -169,6 +230,22 @@ impl Job<'_> {
             sum += self.picture.coordinates(position, self.size, &*points, 0);
         }
         sum as f64 / PATHS as f64
+    }
+}
+
+/// How many samples the pixels get in a pass.
+enum Counts {
+    Same(u64),
+    /// Row by row.
+    Each(Vec<u64>),
+}
+
+impl Counts {
+    fn of(&self, [x, y]: [u32; 2], [width, _]: [u32; 2]) -> u64 {
+        match self {
+            Self::Same(count) => *count,
+            Self::Each(counts) => counts[y as usize * width as usize + x as usize],
+        }
     }
 }
 

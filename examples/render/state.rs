@@ -1,7 +1,9 @@
 //! What has been rendered so far.
 
+use std::time::Duration;
+
 use estimand::Error;
-use estimand::path::Image;
+use estimand::path::{Allocation, Image};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -18,11 +20,17 @@ pub(crate) struct State {
     deviation: Vec<[f64; 3]>,
     /// The rows of the pass that is not complete.
     rows: Vec<Option<Row>>,
-    /// Evaluations of all that is here, and how many were not finite.
+    /// How samples are dealt to the pixels, once a pilot has told.
+    #[serde(default)]
+    pub(crate) allocation: Option<Allocation>,
+    /// Evaluations of all that is here and of the pilot.
     pub(crate) paths: u64,
+    /// How many values of the picture were not finite.
     pub(crate) rejected: u64,
-    /// The time that it took.
+    /// The time that it took, and how much of it the pilot.
     pub(crate) seconds: f64,
+    #[serde(default)]
+    pub(crate) pilot_seconds: f64,
 }
 
 /// A row of a pass.
@@ -43,10 +51,21 @@ impl State {
             mean: vec![[0.0; 3]; width * height],
             deviation: vec![[0.0; 3]; width * height],
             rows: vec![None; height],
+            allocation: None,
             paths: 0,
             rejected: 0,
             seconds: 0.0,
+            pilot_seconds: 0.0,
         }
+    }
+
+    /// Keeps what a pilot of so many samples a pixel says, if it was not stopped.
+    pub(crate) fn look(&mut self, says: Option<Allocation>, samples: u64, took: Duration) {
+        if says.is_some() {
+            self.paths += samples * self.mean.len() as u64;
+        }
+        self.allocation = says;
+        self.pilot_seconds += took.as_secs_f64();
     }
 
     /// Whether a row of the present pass is there.

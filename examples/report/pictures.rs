@@ -219,7 +219,7 @@ impl Shots {
 fn adaptive(report: &mut Report, reference: &Image, limits: &Limits) -> Result<(), Failure> {
     const SPP: u64 = 64;
     let (size, view) = ([report.effort.large; 2], scenes::cornell_box());
-    let adaptive = Adaptive::new(SPP, 16)?;
+    let adaptive = Adaptive::new(SPP, 8)?;
     let (mut even, mut odd) = (Vec::new(), Vec::new());
     let mut squares = [0.0; 2];
     let mut times = [0.0; 2];
@@ -229,7 +229,9 @@ fn adaptive(report: &mut Report, reference: &Image, limits: &Limits) -> Result<(
         let start = Instant::now();
         let uniform = view.render(size, seed, |key| MonteCarlo::new(SPP, key))?;
         let middle = Instant::now();
-        let adapted = view.render_adaptive(size, seed, adaptive)?;
+        let adapted = view.render_adaptive(size, seed, adaptive, |key, count| {
+            MonteCarlo::new(count, key)
+        })?;
         times[0] += (middle - start).as_secs_f64();
         times[1] += middle.elapsed().as_secs_f64();
         squares[0] += uniform.rmse(reference)?.powi(2);

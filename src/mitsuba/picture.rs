@@ -10,7 +10,7 @@ use crate::path::filter::Filter;
 use crate::path::light::{Environment, Light};
 use crate::path::roulette::Steps;
 use crate::path::sensor::Sensor;
-use crate::path::{Adapted, Adaptive, Unfinished, View};
+use crate::path::{Allocation, Unfinished, View};
 use crate::points::PointSet;
 use crate::{Average, Error, Estimate, Estimator, Incomplete, NonFinite, Sampler};
 
@@ -30,17 +30,18 @@ pub trait Picture: Sync + fmt::Debug {
         count: u64,
     ) -> Result<Estimate<DVec3>, Incomplete<DVec3>>;
 
-    /// The picture with more samples where it varies more: see [`View::render_adaptive`].
+    /// How samples are to be dealt to the pixels, as a pilot shows: see [`View::allocate_while`].
     ///
     /// # Errors
     ///
     /// [`Unfinished`] as there.
-    fn adaptive(
+    fn allocate_while(
         &self,
         size: [u32; 2],
         seed: u64,
-        adaptive: Adaptive,
-    ) -> Result<Adapted, Unfinished>;
+        count: u64,
+        proceed: &(dyn Fn(u32) -> bool + Sync),
+    ) -> Result<Option<Allocation>, Unfinished>;
 
     /// Ends paths by Russian roulette as it pays in this picture: see [`View::learn_roulette`].
     ///
@@ -79,13 +80,14 @@ where
             .estimate(&self.pixel(position, size))
     }
 
-    fn adaptive(
+    fn allocate_while(
         &self,
         size: [u32; 2],
         seed: u64,
-        adaptive: Adaptive,
-    ) -> Result<Adapted, Unfinished> {
-        self.render_adaptive(size, seed, adaptive)
+        count: u64,
+        proceed: &(dyn Fn(u32) -> bool + Sync),
+    ) -> Result<Option<Allocation>, Unfinished> {
+        self.allocate_while(size, seed, count, proceed)
     }
 
     fn learn_roulette(&mut self, size: [u32; 2], count: u64, seed: u64) -> Result<(), Error> {

@@ -320,7 +320,7 @@ impl Image {
         Self::of_pixels_while(size, seed, &estimate, &|_| true)
     }
 
-    fn of_pixels_while(
+    pub(in crate::path) fn of_pixels_while(
         size: [u32; 2],
         seed: u64,
         estimate: &(dyn Fn([u32; 2], u64) -> Outcome<Vec3> + Sync),

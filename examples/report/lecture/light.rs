@@ -361,8 +361,11 @@ fn next_event(studio: &Studio<'_>) -> Result<Vec<Claim>, Failure> {
 fn adaptive(studio: &Studio<'_>) -> Result<Vec<Claim>, Failure> {
     let (view, size) = (scenes::cornell_box(), studio.size());
     let uniform = studio.plain(&view, SPP)?;
-    let adaptive = Adaptive::new(SPP, 16)?;
-    let adapted = studio.measure(|seed| Ok(view.render_adaptive(size, seed, adaptive)?.image))?;
+    let adaptive = Adaptive::new(SPP, 8)?;
+    let adapted = studio.measure(|seed| {
+        let plain = |key, count| MonteCarlo::new(count, key);
+        Ok(view.render_adaptive(size, seed, adaptive, plain)?.image)
+    })?;
     // What not to do: eight samples of a pixel decide how many more it gets, and count themselves.
     let scale = (uniform.variance.value / 8.0).sqrt();
     let own = studio.measure(|seed| {

@@ -274,7 +274,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     ///     let count = counts[(y * size[0] + x) as usize];
     ///     Average::new(points, count).estimate(&view.pixel([x, y], size))
     /// })?;
-    /// assert_eq!(picture.used(), counts.iter().sum());
+    /// assert_eq!(picture.used(), counts.iter().sum::<u64>());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///

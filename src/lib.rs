@@ -78,8 +78,8 @@
 //!
 //! - Sampling is for many dimensions, kinks, jumps and odd domains. A smooth integrand in few dimensions belongs to
 //!   deterministic cubature: on four smooth functions scipy's came within 4e-13 in two dimensions and 5e-11 in three, where our best
-//!   points had reached 1e-11 to 2e-9, in two, and 1e-11 to 3e-8, in three, in the same time; in five it needed two to sixteen
-//!   seconds for 2e-13 to 2e-5, where they had 4e-8 to 2e-5 after a third of one at most (`docs/race.md`).
+//!   points had reached 1e-11 to 2e-9, in two, and 1e-11 to 3e-8, in three, in the same time; in five it needed one to six
+//!   seconds for 2e-13 to 2e-5, where they had 4e-8 to 2e-5 after a sixth of one at most (`docs/race.md`).
 //! - Coordinates have a resolution of 2^-53, but near 0 in some sets: a peak narrower than that is seen by no point.
 //! - An estimate is only as good as its finite variance: where the square of the integrand has no integral,
 //!   error bars are too small, whatever their kind. [`estimators`] has tables of how often they hold.

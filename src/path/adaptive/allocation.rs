@@ -31,13 +31,23 @@ impl Allocation {
     /// best for the mean square error of the whole picture with independent samples.
     pub fn counts(&self, mean: u64) -> Vec<u64> {
         let mean = mean.max(1) as f64;
-        let least = (LEAST * mean).ceil();
-        let level = Level::new(&self.deviations, least, MOST * mean);
-        let factor = level.factor(mean);
+        let [least, most] = [(LEAST * mean).ceil(), MOST * mean];
+        let share = |factor: f64, deviation: f64| (factor * deviation).clamp(least, most);
+        let given = |log: f64| {
+            self.deviations
+                .iter()
+                .map(|&d| share(log.exp(), d))
+                .sum::<f64>()
+        };
+        // The largest deviation is 1: from all at the least to all at the most, but those of deviation zero.
+        let positive = self.deviations.iter().copied().filter(|&d| d > 0.0);
+        let range = [least.ln(), (most / positive.fold(1.0, f64::min)).ln()];
+        let [log, _] = between(range, mean * self.deviations.len() as f64, given);
+        let factor = log.exp();
         // Rounded so that the sums of all pixels so far are right to half a sample, hence the whole is.
         let (mut wanted, mut given) = (0.0, 0.0);
         let count = |&deviation: &f64| {
-            wanted += level.share(factor, deviation);
+            wanted += share(factor, deviation);
             let count = (wanted - given).round().max(least);
             given += count;
             whole(count)
@@ -82,16 +92,8 @@ impl Allocation {
             .copied()
             .filter(|w| w.is_finite())
             .fold(0.0, f64::min);
-        let (mut low, mut high) = (limits[0] - 1.0, limits[1] - lowest + 1.0);
         let target = mean * weights.len() as f64;
-        for _ in 0..STEPS {
-            let middle = 0.5 * (low + high);
-            if given(middle) > target {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
+        let [low, high] = between([limits[0] - 1.0, limits[1] - lowest + 1.0], target, given);
         // What is left goes to some of the pixels for which the two differ, spread evenly.
         let (few, many) = (given(low), given(high));
         let part = if many > few {
@@ -115,71 +117,19 @@ impl Allocation {
 }
 
 /// Steps of the search for a factor.
-const STEPS: usize = 30;
+const STEPS: usize = 60;
 
-/// Shares in proportion to weights, within limits.
-struct Level {
-    /// Falling, with the sums of those before each, and of all.
-    weights: Vec<f64>,
-    sums: Vec<f64>,
-    least: f64,
-    most: f64,
-}
-
-impl Level {
-    fn new(weights: &[f64], least: f64, most: f64) -> Self {
-        let mut weights = weights.to_vec();
-        weights.sort_unstable_by(|a, b| b.total_cmp(a));
-        let mut sum = 0.0;
-        let before = |weight: &f64| {
-            let before = sum;
-            sum += weight;
-            before
-        };
-        let mut sums: Vec<f64> = weights.iter().map(before).collect();
-        sums.push(sum);
-        Self {
-            weights,
-            sums,
-            least,
-            most,
+/// Two neighbouring places between `low` and `high` at which `given`, which grows, is at most `target` and above it.
+fn between([mut low, mut high]: [f64; 2], target: f64, given: impl Fn(f64) -> f64) -> [f64; 2] {
+    for _ in 0..STEPS {
+        let middle = 0.5 * (low + high);
+        if given(middle) > target {
+            high = middle;
+        } else {
+            low = middle;
         }
     }
-
-    #[inline]
-    fn share(&self, factor: f64, weight: f64) -> f64 {
-        (factor * weight).clamp(self.least, self.most)
-    }
-
-    /// What the weights are to be multiplied by so that the mean of the shares is `mean`, as far as the limits allow.
-    fn factor(&self, mean: f64) -> f64 {
-        let count = self.weights.len();
-        let total = mean.clamp(self.least, self.most) * count as f64;
-        let given = |factor: f64| {
-            let large = self.weights.partition_point(|&w| factor * w > self.most);
-            let small = self.weights.partition_point(|&w| factor * w > self.least);
-            self.most * large as f64
-                + factor * (self.sums[small] - self.sums[large])
-                + self.least * (count - small) as f64
-        };
-        // The largest weight is 1. Logarithms, since the smallest may be tiny.
-        let smallest = self
-            .weights
-            .iter()
-            .rev()
-            .find(|&&w| w > 0.0)
-            .unwrap_or(&1.0);
-        let (mut low, mut high) = (self.least.ln(), (self.most / smallest).ln());
-        for _ in 0..2 * STEPS {
-            let middle = 0.5 * (low + high);
-            if given(middle.exp()) > total {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
-        low.exp()
-    }
+    [low, high]
 }
 
 #[expect(

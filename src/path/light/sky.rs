@@ -135,21 +135,18 @@ impl Sky {
         )
     }
 
-    #[inline]
-    fn corners(&self, square: &Square) -> [Vec3A; 4] {
-        around(&self.pixels, self.width, square.row, square.column).map(|&p| Vec3A::from(p))
-    }
-
-    /// The light from a place in a square with the given pixels around it, whose angle to the zenith has the given sine. The density is
-    /// that of `directions`, by the pixels that are at hand anyway.
+    /// The light from a place in a square, whose angle to the zenith has the given sine. The density is that of `directions`, by the
+    /// pixels that are at hand anyway.
     #[inline]
     #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-    fn emission(&self, square: &Square, corners: &[Vec3A; 4], sine: f32) -> Emission {
+    fn emission(&self, square: &Square, sine: f32) -> Emission {
         let [s, t] = square.within;
+        let corners = around(&self.pixels, self.width, square.row, square.column);
+        let corners = corners.map(|&pixel| Vec3A::from(pixel));
         let above = corners[0].lerp(corners[1], s);
         let below = corners[2].lerp(corners[3], s);
         let density = if sine > 0.0 {
-            let luminance = f64::from(mean_luminance(*corners));
+            let luminance = f64::from(mean_luminance(corners));
             (luminance * self.density[square.row] / f64::from(sine)) as f32
         } else {
             0.0
@@ -216,7 +213,7 @@ impl Environment for Sky {
     #[inline]
     fn emitted(&self, direction: Vec3A) -> Emission {
         let (square, sine) = self.place(direction);
-        self.emission(&square, &self.corners(&square), sine)
+        self.emission(&square, sine)
     }
 
     #[inline]
@@ -226,7 +223,7 @@ impl Environment for Sky {
         let [place] = place;
         let square = Square::from(place);
         let (direction, sine) = self.direction(&place);
-        let Emission { radiance, density } = self.emission(&square, &self.corners(&square), sine);
+        let Emission { radiance, density } = self.emission(&square, sine);
         (density > 0.0 && density < f32::INFINITY).then(|| Illumination {
             way: Segment::along(from, direction),
             weight: radiance / density,
@@ -276,7 +273,7 @@ mod tests {
             column: x as usize,
             within: [x.fract() as f32, y.fract() as f32],
         };
-        sky.emission(&square, &sky.corners(&square), sine)
+        sky.emission(&square, sine)
     }
 
     #[test]

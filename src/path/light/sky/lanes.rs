@@ -266,8 +266,7 @@ mod tests {
                 sky.directions.locate(&[*point], &mut place);
                 let (direction, sine) = sky.direction(&place[0]);
                 let square = super::super::Square::from(place[0]);
-                let Emission { radiance, density } =
-                    sky.emission(&square, &sky.corners(&square), sine);
+                let Emission { radiance, density } = sky.emission(&square, sine);
                 if density > 0.0 && density < f32::INFINITY {
                     assert_eq!(Row::vector(&seen.direction, lane), direction, "{point:?}");
                     assert_eq!(Row::vector(&seen.radiance, lane), radiance, "{point:?}");

@@ -11,6 +11,10 @@ use pulp::Simd;
 /// The widest vectors there are.
 pub(in crate::path) const WIDEST: usize = 16;
 
+/// Whether one instruction for the larger or smaller of two numbers gives the second of them unless the first is so, also
+/// where one is NaN or both are zeros. Those of other machines differ there.
+const PICKS_OTHER: bool = cfg!(target_arch = "x86_64");
+
 /// Room for a number for each lane, to be written and read lane by lane.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
@@ -191,12 +195,18 @@ impl<S: Simd> Real<S> {
     /// The larger number; the other if this one is NaN.
     #[inline(always)]
     pub(in crate::path) fn max(self, other: Self) -> Self {
+        if PICKS_OTHER && !S::IS_SCALAR {
+            return self.make(self.simd.max_f32s(self.lanes, other.lanes));
+        }
         self.gt(other).select(self, other)
     }
 
     /// The smaller number; the other if this one is NaN.
     #[inline(always)]
     pub(in crate::path) fn min(self, other: Self) -> Self {
+        if PICKS_OTHER && !S::IS_SCALAR {
+            return self.make(self.simd.min_f32s(self.lanes, other.lanes));
+        }
         self.lt(other).select(self, other)
     }
 }

@@ -1,6 +1,7 @@
 //! All shapes of a scene, and which of them a ray meets.
 
 mod balls;
+mod collapse;
 mod copies;
 mod flats;
 mod kind;
@@ -17,6 +18,7 @@ use super::Shading;
 use super::ray::{Ray, Surface};
 use super::shape::{Mesh, Primitive, Shape};
 
+use collapse::Cost;
 pub(in crate::path) use copies::Copied;
 use copies::Copies;
 #[cfg(feature = "simd")]
@@ -68,6 +70,13 @@ pub(in crate::path) struct Hit {
 /// Up to so many shapes are swept over: there a sweep of vectors is faster than a tree.
 pub(in crate::path) const FEW: usize = 48;
 
+/// Shapes of any kind are asked one after the other.
+const ONE_BY_ONE: Cost = Cost {
+    node: 1.0,
+    leaf: 0.0,
+    shape: 0.5,
+};
+
 /// The smallest box around boxes.
 pub(in crate::path) fn around(boxes: impl Iterator<Item = [Vec3A; 2]>) -> [Vec3A; 2] {
     let nothing = [Vec3A::INFINITY, Vec3A::NEG_INFINITY];
@@ -86,7 +95,7 @@ impl Geometry {
         let search = if shapes.len() <= FEW {
             Search::Sweep(Sweep::new(&shapes, &others))
         } else {
-            Search::Tree(Tree::new(&shapes))
+            Search::Tree(Tree::new(&shapes, ONE_BY_ONE))
         };
         let bounds = around(shapes.iter().map(Shape::bounds).chain(others));
         Self {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{Affine3A, Mat3A, Vec3A};
 
 use super::tree::Tree;
-use super::{Geometry, Hit, around};
+use super::{Geometry, Hit, ONE_BY_ONE, around};
 use crate::Error;
 use crate::path::Shading;
 use crate::path::ray::{Ray, Surface, gamma};
@@ -124,7 +124,7 @@ impl Copies {
             return None;
         }
         let bounds: Vec<_> = copies.iter().map(Copied::bounds).collect();
-        let tree = Tree::around(&bounds);
+        let tree = Tree::around(&bounds, ONE_BY_ONE);
         Some(Self { copies, tree })
     }
 

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3A};
 
 use super::Hit;
+use super::collapse::Cost;
 use super::flats::{Flats, LANES};
 use super::probe::Probe;
 use super::tree::{InLeaf, Leaves, Tree};
@@ -29,6 +30,13 @@ struct Block {
     flats: Flats,
     numbers: [u32; LANES],
 }
+
+/// All triangles of a leaf are asked at once, as the boxes of a node are.
+const BLOCK: Cost = Cost {
+    node: 1.0,
+    leaf: 1.0,
+    shape: 0.0,
+};
 
 impl Block {
     /// The triangles of the given numbers, at most eight.
@@ -67,7 +75,7 @@ impl Soup {
             starts.push(flats.len());
             flats.extend((0..mesh.triangles().len()).map(|triangle| mesh.flat(triangle)));
         }
-        let tree = (!flats.is_empty()).then(|| Tree::new(&flats))?;
+        let tree = (!flats.is_empty()).then(|| Tree::new(&flats, BLOCK))?;
         let blocks = (tree.leaves())
             .map(|leaf| Block::new(&flats, leaf))
             .collect();

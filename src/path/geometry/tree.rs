@@ -5,10 +5,9 @@ use std::time::Duration;
 use glam::Vec3A;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
-use obvhs::bvh2::node::Bvh2Node;
 
+use super::collapse::{Collapse, Cost};
 use super::flats::LANES;
 use super::node::{Child, Node};
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
@@ -21,7 +20,7 @@ use crate::path::shape::Shape;
 
 /// An eight-way tree of boxes around the shapes, with up to eight shapes in a leaf.
 ///
-/// A binary tree of `obvhs`, of which every node takes in those below it until it has eight boxes. The first node is the root.
+/// A binary tree of `obvhs`, of whose boxes those are [kept](Collapse) that cost least. The first node is the root.
 pub(super) struct Tree {
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
@@ -53,13 +52,13 @@ const NONE: u32 = u32::MAX;
 
 impl Tree {
     /// The tree of at least one shape.
-    pub(super) fn new<S: Shape>(shapes: &[S]) -> Self {
+    pub(super) fn new<S: Shape>(shapes: &[S], cost: Cost) -> Self {
         let boxes: Vec<_> = shapes.iter().map(Shape::bounds).collect();
-        Self::around(&boxes)
+        Self::around(&boxes, cost)
     }
 
     /// The tree of at least one box, given by two corners.
-    pub(super) fn around(boxes: &[[Vec3A; 2]]) -> Self {
+    pub(super) fn around(boxes: &[[Vec3A; 2]], cost: Cost) -> Self {
         let [low, high] = around(boxes.iter().copied());
         let extent = low.abs().max(high.abs()).max_element();
         // A power of two, which is exact, so that areas stay in the range of `f32`.
@@ -77,48 +76,37 @@ impl Tree {
             BvhBuildParams::fast_build()
         };
         let parameters = BvhBuildParams {
-            max_prims_per_leaf: SHAPES,
-            collapse_traversal_cost: TRAVERSAL_COST,
+            max_prims_per_leaf: 1,
             ..parameters
         };
         let binary = build_bvh2(&boxes, parameters, &mut Duration::default());
-        Self::of(&binary, scale)
+        Self::of(&Collapse::new(&binary, cost), scale)
     }
 
     /// The tree of the boxes of a binary one, which is scaled.
-    fn of(binary: &Bvh2, scale: f32) -> Self {
+    fn of(collapse: &Collapse<'_>, scale: f32) -> Self {
         let mut tree = Self {
             nodes: vec![Node::EMPTY],
             leaves: Vec::new(),
             #[cfg(all(feature = "simd", target_arch = "x86_64"))]
             simd: pulp::x86::V3::try_new(),
         };
-        let mut open = vec![(0, vec![binary.nodes[0]])];
-        while let Some((place, mut boxes)) = open.pop() {
-            while boxes.len() < LANES
-                && let Some(largest) = largest(&boxes)
-            {
-                let first = boxes.swap_remove(largest).first_index as usize;
-                boxes.extend_from_slice(&binary.nodes[first..first + 2]);
-            }
-            for (lane, node) in boxes.into_iter().enumerate() {
-                let bounds = [node.aabb.min, node.aabb.max].map(|end| (end / scale).to_array());
-                let first = node.first_index as usize;
-                let child = if node.is_leaf() {
+        let mut open = vec![(0, 0)];
+        while let Some((node, place)) = open.pop() {
+            for (lane, place) in collapse.lanes(place).into_iter().enumerate() {
+                let bounds = collapse.bounds(place).map(|end| (end / scale).to_array());
+                let child = if let Some(shapes) = collapse.leaf(place) {
                     let mut leaf = [NONE; LANES];
-                    let shapes = &binary.primitive_indices[first..];
-                    leaf.iter_mut()
-                        .zip(&shapes[..node.prim_count as usize])
-                        .for_each(|(slot, &shape)| *slot = shape);
+                    leaf[..shapes.len()].copy_from_slice(&shapes);
                     tree.leaves.push(leaf);
                     Child::leaf(tree.leaves.len() - 1)
                 } else {
                     tree.nodes.push(Node::EMPTY);
                     let index = tree.nodes.len() - 1;
-                    open.push((index, binary.nodes[first..first + 2].to_vec()));
+                    open.push((index, place));
                     Child::node(index)
                 };
-                tree.nodes[place].set(lane, bounds, child);
+                tree.nodes[node].set(lane, bounds, child);
             }
         }
         tree
@@ -292,22 +280,8 @@ impl<F: FnMut(usize, f32) -> Option<f32>> Leaves for Each<'_, F> {
     }
 }
 
-/// The largest box that is no leaf.
-fn largest(boxes: &[Bvh2Node]) -> Option<usize> {
-    let inner = (0..boxes.len()).filter(|&place| !boxes[place].is_leaf());
-    let area = |place: &usize| boxes[*place].aabb.half_area();
-    inner.max_by(|a, b| area(a).total_cmp(&area(b)))
-}
-
 /// From so many boxes on, the tree is built fast.
 const SLOW: usize = 100_000;
-
-/// Shapes in a leaf at most.
-#[expect(clippy::cast_possible_truncation, reason = "8")]
-const SHAPES: u32 = LANES as u32;
-
-/// What visiting a node costs, in tests of single shapes.
-const TRAVERSAL_COST: f32 = 8.0;
 
 /// A scaled box, widened by what rounding does to a ray's way to it.
 fn scaled(corners: [Vec3A; 2], scale: f32) -> Aabb {
@@ -329,6 +303,7 @@ impl core::fmt::Debug for Tree {
 mod tests {
     use super::*;
     use crate::hash::{hash, unit_f32};
+    use crate::path::geometry::ONE_BY_ONE;
     use crate::path::shape::Flat;
 
     /// Triangles in a cube of edge `size`, every fourth of them twice.
@@ -363,7 +338,7 @@ mod tests {
         let mut met = 0;
         for (count, size) in [(1, 1.0), (9, 3.0), (400, 1.0), (400, 1e-15), (400, 1e15)] {
             let shapes = triangles(count, size);
-            let tree = Tree::new(&shapes);
+            let tree = Tree::new(&shapes, ONE_BY_ONE);
             assert_eq!(tree.leaves().flatten().count(), shapes.len());
             for index in 0..2000 {
                 let ray = ray(index, size);

@@ -6,6 +6,7 @@ mod copies;
 mod flats;
 mod kind;
 mod node;
+mod pages;
 mod probe;
 mod soup;
 mod stack;

@@ -1,5 +1,6 @@
 //! Eight flat shapes at once.
 
+use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3A};
 
 use crate::path::ray::{Ray, Surface};
@@ -46,7 +47,8 @@ pub(super) fn blocks<'a, B: Copy, S: 'a>(
 }
 
 /// Eight flat shapes, one a lane. An empty lane is all zeros: a ray's distance to it is NaN, no hit.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
 pub(super) struct Flats {
     pub(super) corner: [Lanes; 3],
     pub(super) normal: [Lanes; 3],

@@ -1,18 +1,23 @@
 //! The inner nodes of a tree: eight boxes each.
 
+use bytemuck::{Pod, Zeroable};
+
 use super::flats::{LANES, Lanes};
 
 /// Up to eight boxes, and what is in each.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C, align(64))]
 pub(super) struct Node {
     /// The low ends along the three axes, then the high ones. An empty lane is the box that nothing is in.
     pub(super) bounds: [Lanes; 6],
     children: [Child; LANES],
+    /// What is left of four lines of a cache.
+    rest: Lanes,
 }
 
 /// What is in a box: another node, or a leaf.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(transparent)]
 pub(super) struct Child(u32);
 
 const LEAF: u32 = 1 << 31;
@@ -53,6 +58,7 @@ impl Node {
             [low, low, low, high, high, high]
         },
         children: [Child(0); LANES],
+        rest: [0.0; LANES],
     };
 
     pub(super) fn set(&mut self, lane: usize, [low, high]: [[f32; 3]; 2], child: Child) {

@@ -1,10 +1,12 @@
 //! The triangles of all meshes.
 
+use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3A};
 
 use super::Hit;
 use super::collapse::Cost;
 use super::flats::{Flats, LANES};
+use super::pages::Pages;
 use super::probe::Probe;
 use super::tree::{InLeaf, Leaves, Tree};
 use crate::path::Shading;
@@ -19,13 +21,13 @@ pub(super) struct Soup {
     starts: Vec<usize>,
     tree: Tree,
     /// Those of each leaf of the tree.
-    blocks: Vec<Block>,
+    blocks: Pages<Block>,
     bounds: [Vec3A; 2],
 }
 
 /// The triangles of a leaf, and their numbers: eight lines of a cache.
-#[derive(Debug)]
-#[repr(align(64))]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C, align(64))]
 struct Block {
     flats: Flats,
     numbers: [u32; LANES],
@@ -76,9 +78,7 @@ impl Soup {
             flats.extend((0..mesh.triangles().len()).map(|triangle| mesh.flat(triangle)));
         }
         let tree = (!flats.is_empty()).then(|| Tree::new(&flats, BLOCK))?;
-        let blocks = (tree.leaves())
-            .map(|leaf| Block::new(&flats, leaf))
-            .collect();
+        let blocks = Pages::new(tree.leaves().map(|leaf| Block::new(&flats, leaf)));
         let bounds = super::around(flats.iter().map(Shape::bounds));
         Some(Self {
             bounds,
@@ -95,13 +95,14 @@ impl Soup {
 
     #[inline]
     pub(super) fn nearest(&self, ray: &Ray, limit: f32) -> Option<Struck> {
-        let mut leaves = Blocks(&self.blocks);
+        let blocks = self.blocks.as_slice();
+        let mut leaves = Blocks(blocks);
         let InLeaf {
             leaf,
             lane,
             distance,
         } = self.tree.nearest_in_leaves(ray, limit, &mut leaves)?;
-        let block = &self.blocks[leaf];
+        let block = &blocks[leaf];
         let triangle = block.numbers[lane] as usize;
         let mesh = self.mesh(triangle);
         let edges = self.meshes[mesh].edges(triangle - self.starts[mesh]);
@@ -118,7 +119,7 @@ impl Soup {
 
     #[inline]
     pub(super) fn occluded(&self, ray: &Ray, limit: f32) -> bool {
-        let mut leaves = Blocks(&self.blocks);
+        let mut leaves = Blocks(self.blocks.as_slice());
         self.tree.any_in_leaves(ray, limit, &mut leaves)
     }
 

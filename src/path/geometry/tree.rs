@@ -10,6 +10,7 @@ use obvhs::bvh2::builder::build_bvh2;
 use super::collapse::{Collapse, Cost};
 use super::flats::LANES;
 use super::node::{Child, Node};
+use super::pages::Pages;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 use super::probe::Vectors;
 use super::probe::{Plain, Probe};
@@ -22,7 +23,7 @@ use crate::path::shape::Shape;
 ///
 /// A binary tree of `obvhs`, of whose boxes those are [kept](Collapse) that cost least. The first node is the root.
 pub(super) struct Tree {
-    nodes: Vec<Node>,
+    nodes: Pages<Node>,
     leaves: Vec<Leaf>,
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     simd: Option<pulp::x86::V3>,
@@ -85,12 +86,7 @@ impl Tree {
 
     /// The tree of the boxes of a binary one, which is scaled.
     fn of(collapse: &Collapse<'_>, scale: f32) -> Self {
-        let mut tree = Self {
-            nodes: vec![Node::EMPTY],
-            leaves: Vec::new(),
-            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
-            simd: pulp::x86::V3::try_new(),
-        };
+        let (mut nodes, mut leaves) = (vec![Node::EMPTY], Vec::new());
         let mut open = vec![(0, 0)];
         while let Some((node, place)) = open.pop() {
             for (lane, place) in collapse.lanes(place).into_iter().enumerate() {
@@ -98,22 +94,27 @@ impl Tree {
                 let child = if let Some(shapes) = collapse.leaf(place) {
                     let mut leaf = [NONE; LANES];
                     leaf[..shapes.len()].copy_from_slice(&shapes);
-                    tree.leaves.push(leaf);
-                    Child::leaf(tree.leaves.len() - 1)
+                    leaves.push(leaf);
+                    Child::leaf(leaves.len() - 1)
                 } else {
-                    tree.nodes.push(Node::EMPTY);
-                    let index = tree.nodes.len() - 1;
+                    nodes.push(Node::EMPTY);
+                    let index = nodes.len() - 1;
                     open.push((index, place));
                     Child::node(index)
                 };
-                tree.nodes[node].set(lane, bounds, child);
+                nodes[node].set(lane, bounds, child);
             }
         }
-        tree
+        Self {
+            nodes: Pages::new(nodes.into_iter()),
+            leaves,
+            #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+            simd: pulp::x86::V3::try_new(),
+        }
     }
 
     /// The shapes of each leaf.
-    pub(super) fn leaves(&self) -> impl Iterator<Item = impl Iterator<Item = usize> + '_> {
+    pub(super) fn leaves(&self) -> impl ExactSizeIterator<Item = impl Iterator<Item = usize> + '_> {
         self.leaves.iter().map(|leaf| {
             let shapes = leaf.iter().take_while(|&&shape| shape != NONE);
             shapes.map(|&shape| shape as usize)
@@ -206,6 +207,7 @@ impl Tree {
         mut limit: f32,
         leaves: &mut impl Leaves,
     ) -> Option<InLeaf> {
+        let nodes = self.nodes.as_slice();
         let mut nearest = None;
         let mut stack = Stack::new();
         let mut next = Some(Child::ROOT);
@@ -218,7 +220,7 @@ impl Tree {
                 }
                 None
             } else {
-                let node = &self.nodes[index];
+                let node = &nodes[index];
                 stack.push(node, &probe.enter(node, limit))
             };
             next = next.or_else(
@@ -235,12 +237,13 @@ impl Tree {
 
     #[inline(always)]
     fn walk_to_any(&self, probe: &impl Probe, limit: f32, leaves: &mut impl Leaves) -> bool {
+        let nodes = self.nodes.as_slice();
         let mut stack = Stack::new();
         let mut next = Some(Child::ROOT);
         while let Some(child) = next {
             let index = child.index();
             if !child.is_leaf() {
-                let node = &self.nodes[index];
+                let node = &nodes[index];
                 stack.add(node, &probe.enter(node, limit));
             } else if leaves.any(probe, index, limit) {
                 return true;
@@ -293,7 +296,7 @@ fn scaled(corners: [Vec3A; 2], scale: f32) -> Aabb {
 impl core::fmt::Debug for Tree {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.debug_struct("Tree")
-            .field("nodes", &self.nodes.len())
+            .field("nodes", &self.nodes.as_slice().len())
             .field("leaves", &self.leaves.len())
             .finish_non_exhaustive()
     }

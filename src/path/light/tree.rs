@@ -1,14 +1,17 @@
 //! Many shapes that emit light, in a tree.
 
-use core::f32::consts::{FRAC_PI_2, PI};
+mod bound;
+mod group;
 
 use glam::Vec3A;
 
 use super::{Emission, Emitter, Illumination, Light};
 use crate::path::frame::singles;
-use crate::path::shape::{Primitive, Shape};
+use crate::path::shape::Shape;
 use crate::path::{Segment, Surface};
 use crate::{Error, Sampler};
+use bound::{Bound, split};
+use group::Group;
 
 /// Many shapes that emit light from their outer sides, chosen by what they may do for the surface at hand.
 ///
@@ -35,7 +38,7 @@ pub struct LightTree {
 /// A group of emitters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Node {
-    bound: Bound,
+    group: Group,
     /// The node above; the root's is itself.
     parent: u32,
     /// The first of its branches, or its emitter.
@@ -48,107 +51,6 @@ enum Content {
     Emitter(u32),
 }
 
-/// Where emitters are, which way they shine and how much.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Bound {
-    low: Vec3A,
-    high: Vec3A,
-    /// All normals are within `spread`, in `[0, pi]`, of `axis`.
-    axis: Vec3A,
-    spread: f32,
-    power: f32,
-}
-
-impl Bound {
-    fn of(emitter: &Emitter) -> Self {
-        let [low, high] = emitter.shape.bounds();
-        let (axis, spread) = match &emitter.shape {
-            Primitive::Flat(_) | Primitive::Disk(_) => {
-                let point = emitter.shape.sample(Vec3A::ZERO, [0.5; 2]);
-                (point.normal, 0.0)
-            }
-            Primitive::Sphere(_) | Primitive::Cylinder(_) => (Vec3A::Z, PI),
-        };
-        Self {
-            low,
-            high,
-            axis,
-            spread,
-            power: single(emitter.power()),
-        }
-    }
-
-    fn with(self, other: Self) -> Self {
-        let (axis, spread) = cone((self.axis, self.spread), (other.axis, other.spread));
-        Self {
-            low: self.low.min(other.low),
-            high: self.high.max(other.high),
-            axis,
-            spread,
-            power: self.power + other.power,
-        }
-    }
-
-    fn center(&self) -> Vec3A {
-        (self.low + self.high) * 0.5
-    }
-
-    /// What it costs to have such a group: its power, over how wide and in how many directions it is spread.
-    fn cost(&self) -> f32 {
-        let size = self.high - self.low;
-        let area = size.x * size.y + size.y * size.z + size.z * size.x;
-        // Solid angle of all directions that are lit, as a fraction; never nothing.
-        let lit = 0.5 * (1.0 - (self.spread + FRAC_PI_2).min(PI).cos());
-        self.power * (area + f32::MIN_POSITIVE) * lit
-    }
-
-    /// A bound of the irradiance at a point, up to a factor that is the same for all; zero only where no light of the group
-    /// arrives.
-    #[inline]
-    fn worth(&self, from: Vec3A) -> f32 {
-        let offset = from - self.center();
-        let squared = offset.length_squared();
-        let squared_radius = 0.25 * (self.high - self.low).length_squared();
-        let near = self.power / squared.max(squared_radius).max(f32::MIN_POSITIVE);
-        if squared <= squared_radius || self.spread + FRAC_PI_2 >= PI {
-            return near;
-        }
-        // The least angle between a normal and the way to the point: that at the centre, less what the normals and the
-        // size of the group can change, and less rounding.
-        let cosine = (self.axis.dot(offset) / squared.sqrt()).clamp(-1.0, 1.0);
-        let apparent = (squared_radius / squared).sqrt().min(1.0).asin();
-        let angle = cosine.acos() - self.spread - apparent - 1e-3;
-        if angle >= FRAC_PI_2 {
-            return 0.0;
-        }
-        near * angle.max(0.0).cos()
-    }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-fn single(x: f64) -> f32 {
-    x as f32
-}
-
-/// The narrowest cone around two cones, each an axis and an angle in `[0, pi]`.
-fn cone((a, wide): (Vec3A, f32), (b, other): (Vec3A, f32)) -> (Vec3A, f32) {
-    if other > wide {
-        return cone((b, other), (a, wide));
-    }
-    let between = a.dot(b).clamp(-1.0, 1.0).acos();
-    if between + other <= wide {
-        return (a, wide);
-    }
-    let spread = 0.5 * (wide + between + other);
-    // Towards the other axis by what is missing.
-    let across = (b - a * a.dot(b)).try_normalize();
-    let (Some(across), true) = (across, spread < PI) else {
-        return (a, PI);
-    };
-    let (sine, cosine) = (spread - wide).sin_cos();
-    (a * cosine + across * sine, spread)
-}
-
 impl LightTree {
     /// Adds the nodes of the emitters in `indices` to the node `at`.
     fn grow(&mut self, at: usize, indices: &mut [u32], bounds: &[Bound]) {
@@ -157,7 +59,7 @@ impl LightTree {
             .fold(bounds[indices[0] as usize], |sum, &index| {
                 sum.with(bounds[index as usize])
             });
-        self.nodes[at].bound = whole;
+        self.nodes[at].group = Group::of(&whole);
         if let [index] = *indices {
             self.nodes[at].content = Content::Emitter(index);
             self.leaves[index as usize] = number(at);
@@ -179,7 +81,7 @@ impl LightTree {
     /// The probability of the first of two branches, seen from a point; `None` if neither can light it.
     #[inline]
     fn first(&self, branches: u32, from: Vec3A) -> Option<f32> {
-        let [a, b] = [0, 1].map(|i| self.nodes[branches as usize + i].bound.worth(from));
+        let [a, b] = [0, 1].map(|i| self.nodes[branches as usize + i].group.worth(from));
         (a + b > 0.0).then(|| a / (a + b))
     }
 
@@ -246,61 +148,6 @@ fn number(node: usize) -> u32 {
     u32::try_from(node).expect("fewer than 2^31 emitters")
 }
 
-/// How many slices along each axis are weighed against one another.
-const SLICES: usize = 12;
-
-/// Sorts the emitters into two groups of about the least cost and returns the number of the first.
-fn split(indices: &mut [u32], bounds: &[Bound], whole: &Bound) -> usize {
-    let center = |index: u32| bounds[index as usize].center();
-    let nothing = [Vec3A::INFINITY, Vec3A::NEG_INFINITY];
-    let [low, high] = indices.iter().fold(nothing, |[low, high], &index| {
-        [low.min(center(index)), high.max(center(index))]
-    });
-    let width = high - low;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a number of slices"
-    )]
-    let slice = |index: u32, axis: usize| {
-        let place = (center(index)[axis] - low[axis]) / width[axis];
-        ((place * SLICES as f32) as usize).min(SLICES - 1)
-    };
-    let mut best = (f32::INFINITY, 0, 0);
-    for axis in (0..3).filter(|&axis| width[axis] > 0.0) {
-        let mut slices = [None::<Bound>; SLICES];
-        for &index in &*indices {
-            let slice = &mut slices[slice(index, axis)];
-            let bound = bounds[index as usize];
-            *slice = Some(slice.map_or(bound, |sum| sum.with(bound)));
-        }
-        // A long group is cut across.
-        let stretch = (whole.high - whole.low).max_element() / width[axis];
-        for place in 1..SLICES {
-            let (below, above) = slices.split_at(place);
-            let together =
-                |side: &[Option<Bound>]| side.iter().flatten().copied().reduce(Bound::with);
-            let (Some(below), Some(above)) = (together(below), together(above)) else {
-                continue;
-            };
-            let cost = stretch * (below.cost() + above.cost());
-            if cost < best.0 {
-                best = (cost, axis, place);
-            }
-        }
-    }
-    let (cost, axis, place) = best;
-    if cost < f32::INFINITY {
-        indices.sort_by_key(|&index| slice(index, axis));
-        let below = indices.partition_point(|&index| slice(index, axis) < place);
-        // All but one on one side, again and again, would make the tree as deep as it is long.
-        if below.min(indices.len() - below) * 16 >= indices.len() {
-            return below;
-        }
-    }
-    indices.len() / 2
-}
-
 impl Light for LightTree {
     fn new(emitters: Vec<Emitter>) -> Result<Self, Error> {
         if emitters.is_empty() || emitters.len() >= 1 << 31 {
@@ -324,7 +171,7 @@ impl Light for LightTree {
             leaves: vec![0; emitters.len()],
             emitters,
             nodes: vec![Node {
-                bound: bounds[0],
+                group: Group::of(&bounds[0]),
                 parent: 0,
                 content: Content::Emitter(0),
             }],

@@ -87,6 +87,8 @@ pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};
 pub use recursive::{Direct, Ending, Recursive, RecursivePixel};
 pub use render::{Pixel, Unfinished, View};
+#[cfg(feature = "mitsuba")]
+pub(crate) use scene::Surfaces;
 pub use scene::{Scene, Vertex};
 pub use segment::Segment;
 pub use shading::{Detail, Facet, Shading};

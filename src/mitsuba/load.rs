@@ -13,15 +13,16 @@ use super::picture::Picture;
 use super::sensor::Projection;
 use super::texture as described;
 use super::{Description, SceneError, Sensor};
-use crate::Error;
 use crate::path::bsdf::{Lambertian, Material};
 use crate::path::light::{
     AreaLights, Background, Constant, Environment, Light, LightTree, NoEnvironment, NoLight,
     Surroundings,
 };
-use crate::path::sensor::{self, Camera, Orthographic, Pinhole, ThinLens};
+use crate::path::sensor::{self, Camera, Orthographic, Pinhole, Sensor as _, ThinLens};
 use crate::path::texture::{Texture, Uniform};
-use crate::path::{Instances, Object, Paths, Scene, View};
+use crate::path::{Instances, Object, Paths, Ray, Surfaces, View};
+use crate::points::{Independent, PointSet};
+use crate::{Error, Sampler};
 use filter::AnyFilter;
 use geometry::{Pieces, Solid};
 use material::{Images, Make, Sources, Value};
@@ -111,53 +112,62 @@ impl Plan<'_> {
 
     /// With the sources of light that it needs.
     fn light<B: Make>(mut self) -> Result<Box<dyn Picture>, SceneError> {
+        let place = &self.description.place;
+        let refused = |e: Error| place.error(e);
+        let (objects, instances) = objects::<B>(core::mem::take(&mut self.pieces))?;
+        let surfaces = Surfaces::new(objects, instances).map_err(refused)?;
+        let by_tree =
+            self.needs.lights == Lights::Several && surfaces.want_light_tree(self.rays()?);
         let sources = core::mem::take(&mut self.sources);
         let background = core::mem::replace(&mut self.background, Background::None);
-        let refused = |e: Error| self.description.place.error(e);
         // Next to a tree, surroundings that are none cost nothing to speak of.
-        if self.needs.surroundings || self.needs.lights == Lights::Many {
+        if self.needs.surroundings || by_tree {
             let surroundings = Surroundings::new(sources, background).map_err(refused)?;
             return match self.needs.lights {
-                Lights::None => self.view::<B, NoLight, _>(surroundings),
-                Lights::Few => self.view::<B, AreaLights, _>(surroundings),
-                Lights::Many => self.view::<B, LightTree, _>(surroundings),
+                Lights::None => self.view::<B, NoLight, _>(surfaces, surroundings),
+                _ if by_tree => self.view::<B, LightTree, _>(surfaces, surroundings),
+                _ => self.view::<B, AreaLights, _>(surfaces, surroundings),
             };
         }
         match (background, self.needs.lights) {
             (Background::Constant(constant), Lights::None) => {
-                self.view::<B, NoLight, Constant>(constant)
+                self.view::<B, NoLight, Constant>(surfaces, constant)
             }
-            (Background::Constant(constant), _) => self.view::<B, AreaLights, Constant>(constant),
-            (_, Lights::None) => self.view::<B, NoLight, _>(NoEnvironment),
-            (_, _) => self.view::<B, AreaLights, _>(NoEnvironment),
+            (Background::Constant(constant), _) => {
+                self.view::<B, AreaLights, Constant>(surfaces, constant)
+            }
+            (_, Lights::None) => self.view::<B, NoLight, _>(surfaces, NoEnvironment),
+            (_, _) => self.view::<B, AreaLights, _>(surfaces, NoEnvironment),
         }
     }
 
     /// With the camera that it needs.
-    fn view<B, L, E>(self, environment: E) -> Result<Box<dyn Picture>, SceneError>
+    fn view<B, L, E>(
+        self,
+        surfaces: Surfaces<B>,
+        environment: E,
+    ) -> Result<Box<dyn Picture>, SceneError>
     where
         B: Make,
         L: Light + fmt::Debug + 'static,
         E: Environment + fmt::Debug + 'static,
     {
-        let refused = |e: Error| self.sensor.place.error(e);
         let paths = self.paths()?;
-        let camera = self.camera().map_err(refused)?;
-        let film = &self.sensor.film;
-        let filter = AnyFilter::of(film.filter).map_err(refused)?;
-        let place = self.description.place.clone();
-        let refused = |e: Error| place.error(e);
-        let needs = self.needs;
-        let (objects, instances) = objects::<B>(self.pieces)?;
-        let scene =
-            Scene::<B, L, E>::with_instances(objects, instances, environment).map_err(refused)?;
+        let camera = self.camera()?;
+        let filter = AnyFilter::of(self.sensor.film.filter);
+        let filter = filter.map_err(|e| self.sensor.place.error(e))?;
+        let place = &self.description.place;
+        let scene = surfaces.scene::<L, E>(environment);
+        let scene = scene.map_err(|e| place.error(e))?;
         Ok(match (camera, filter) {
-            (Camera::Pinhole(sensor), AnyFilter::Box(filter)) if !needs.camera => Box::new(View {
-                scene,
-                sensor,
-                filter,
-                paths,
-            }),
+            (Camera::Pinhole(sensor), AnyFilter::Box(filter)) if !self.needs.camera => {
+                Box::new(View {
+                    scene,
+                    sensor,
+                    filter,
+                    paths,
+                })
+            }
             (sensor, filter) => Box::new(View {
                 scene,
                 sensor,
@@ -167,7 +177,22 @@ impl Plan<'_> {
         })
     }
 
-    fn camera(&self) -> Result<Camera, Error> {
+    /// Rays of the camera, all over the picture.
+    fn rays(&self) -> Result<impl Iterator<Item = Ray> + use<>, SceneError> {
+        let camera = self.camera()?;
+        let points = Independent::new(0);
+        Ok((0..LOOKED_AT).map(move |index| {
+            let mut u = points.point(index);
+            let film = u.next_2d();
+            camera.ray(film, &mut u)
+        }))
+    }
+
+    fn camera(&self) -> Result<Camera, SceneError> {
+        self.placed_camera().map_err(|e| self.sensor.place.error(e))
+    }
+
+    fn placed_camera(&self) -> Result<Camera, Error> {
         let Sensor {
             film, projection, ..
         } = self.sensor;
@@ -220,6 +245,9 @@ impl Plan<'_> {
         }
     }
 }
+
+/// Rays by which it is found how lights are chosen best.
+const LOOKED_AT: u64 = 256;
 
 /// The objects of a scene, and those that stand in it many times over.
 #[expect(clippy::type_complexity, reason = "two lists, for one call")]

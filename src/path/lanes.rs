@@ -99,15 +99,6 @@ impl<S: Simd> Real<S> {
         }
     }
 
-    /// The numbers of vectors of eight lanes.
-    #[inline(always)]
-    pub(in crate::path) fn of(simd: S, numbers: &[f32; 8]) -> Self {
-        Self {
-            simd,
-            lanes: S::as_simd_f32s(numbers).0[0],
-        }
-    }
-
     #[inline(always)]
     pub(in crate::path) fn store(self, row: &mut Row<f32>) {
         S::as_mut_simd_f32s(&mut row.0).0[0] = self.lanes;
@@ -242,6 +233,14 @@ impl<S: Simd> Mask<S> {
 
 #[cfg(target_arch = "x86_64")]
 impl Real<pulp::x86::V3> {
+    #[inline(always)]
+    pub(in crate::path) fn of(simd: pulp::x86::V3, numbers: &[f32; 8]) -> Self {
+        Self {
+            simd,
+            lanes: pulp::cast(*numbers),
+        }
+    }
+
     #[inline(always)]
     pub(in crate::path) fn eight(self) -> [f32; 8] {
         pulp::cast(self.lanes)

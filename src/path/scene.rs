@@ -1,30 +1,31 @@
 //! What is rendered.
 
+#[cfg(feature = "mitsuba")]
+mod choosing;
 mod nearby;
 mod parts;
-
-use std::sync::Arc;
+mod surfaces;
 
 #[cfg(feature = "simd")]
 use glam::Vec3A;
 
 use super::bsdf::{Bsdf, Material};
-use super::geometry::{Copied, FEW, Geometry, Hit};
+use super::geometry::{Geometry, Hit};
 #[cfg(feature = "simd")]
 use super::light::Emission;
-use super::light::{AreaLights, Emitter, Environment, Light, NoEnvironment};
-use super::object::{Instances, Object, Radiance};
+use super::light::{AreaLights, Environment, Light, NoEnvironment};
+use super::object::{Instances, Object};
 #[cfg(feature = "simd")]
 use super::packet::{Emitted, FlatLight, Law, Optics, Packet};
 use super::ray::{Ray, Surface};
-use super::resolution::{check_object, check_scene};
 use super::segment::{End, Segment};
 use super::{Detail, Shading};
 use crate::Error;
 
 #[cfg(feature = "simd")]
 use parts::DARK;
-use parts::{Owner, Parts, are_few};
+use parts::Owner;
+pub(crate) use surfaces::Surfaces;
 
 /// A scene: shapes, how they scatter light (`B`), which of them emit it (`L`) and what is around them (`E`).
 ///
@@ -101,61 +102,7 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
         instances: Vec<Instances<B>>,
         environment: E,
     ) -> Result<Self, Error> {
-        let mut parts = Parts::default();
-        let mut objects = objects;
-        if B::Detail::is_nothing() && are_few(&objects) && instances.is_empty() {
-            objects.iter_mut().for_each(Object::take_apart);
-        }
-        let shines = |object: &Object<B>| object.radiance != Radiance::Nothing;
-        let meshes_shine = objects
-            .iter()
-            .any(|one| shines(one) && !one.meshes.is_empty());
-        let (shapes, meshes) = parts.add(objects)?;
-        let mut copies = Vec::new();
-        for Instances { objects, places } in instances {
-            if objects.iter().any(shines) {
-                let given = "one that does";
-                return Err(Error::refused("instance", "one that emits no light", given));
-            }
-            let start = parts.owners.len();
-            let (shapes, meshes) = parts.add(objects)?;
-            let group = Arc::new(Geometry::new(shapes, meshes, Vec::new()));
-            check_scene(group.bounds())?;
-            for place in places {
-                let copy = Copied::new(Arc::clone(&group), start, place)?;
-                check_object(copy.extent())?;
-                copies.push(copy);
-            }
-        }
-        let few = shapes.len() <= FEW;
-        let flat_lights = few && parts.lights_are_flat() && !meshes_shine;
-        let geometry = Geometry::new(shapes, meshes, copies);
-        check_scene(geometry.bounds())?;
-        let mut emitters = parts.emitters;
-        // Where lights go in lanes, drawing from the area is much the faster way.
-        let in_lanes = flat_lights && L::new(emitters.clone())?.as_area_lights().is_some();
-        let from_area = in_lanes && !nearby::are_lit(&geometry, &emitters);
-        if !from_area {
-            emitters.iter_mut().for_each(Emitter::by_solid_angle);
-        }
-        #[cfg_attr(
-            not(feature = "simd"),
-            expect(unused_mut, reason = "there are no packets")
-        )]
-        let mut scene = Self {
-            geometry,
-            owners: parts.owners,
-            bsdfs: parts.bsdfs,
-            lights: L::new(emitters)?,
-            environment,
-            #[cfg(feature = "simd")]
-            packet: None,
-        };
-        #[cfg(feature = "simd")]
-        if few {
-            scene.packet = scene.packed(in_lanes).map(Box::new);
-        }
-        Ok(scene)
+        Surfaces::new(objects, instances)?.scene(environment)
     }
 
     /// The scene for many paths at once, if it is one of those; `in_lanes` tells whether its lights are such as go in lanes.

@@ -23,19 +23,15 @@ pub(super) struct Needs {
     pub(super) instances: bool,
 }
 
-/// How many shapes emit light.
+/// How many shapes emit light, and how one of them is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Lights {
     None,
-    /// They are chosen by their power.
-    Few,
-    /// They are chosen by what they do for the surface at hand.
-    Many,
+    /// Any number, chosen by their power.
+    ByPower,
+    /// Two or more: a look at the scene tells whether by their power or by a [tree](crate::path::light::LightTree).
+    Several,
 }
-
-/// From so many lights on they are chosen by a [tree](crate::path::light::LightTree). What decides is less their number than how
-/// far they are from one another: see there what it gains and costs.
-const MANY: usize = 20;
 
 impl Lights {
     /// Of a mesh every triangle is a light. Nothing that is copied shines.
@@ -46,18 +42,18 @@ impl Lights {
             .filter(|solid| solid.radiance.is_some());
         match shining.map(|solid| solid.surface.count()).sum() {
             0 => Self::None,
-            1..MANY => Self::Few,
-            _ => Self::Many,
+            1 => Self::ByPower,
+            _ => Self::Several,
         }
     }
 }
 
 impl Needs {
-    /// Everything; any number of lights can be chosen by their power.
+    /// Everything.
     pub(super) const ALL: Self = Self {
         shading: true,
         materials: true,
-        lights: Lights::Few,
+        lights: Lights::ByPower,
         surroundings: true,
         constant: true,
         camera: true,

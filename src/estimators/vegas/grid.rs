@@ -48,8 +48,8 @@ impl Grid {
         let numbers = (0_u32..).step_by(bins);
         let axis = |(&cells, first): (&u64, u32)| Axis {
             cell: 0.0,
-            cells: cells as f64,
-            reciprocal: 1.0 / cells as f64,
+            cells,
+            reciprocal: ONE.div_ceil(cells),
             scale: bins as f64 / cells as f64,
             first,
         };
@@ -60,24 +60,27 @@ impl Grid {
 /// Goes to the place of `stratum`.
 #[inline]
 pub(super) fn enter(stratum: usize, place: &mut [Axis]) {
-    // A machine takes many times as long to divide as to multiply. With a half added, a quotient is at least 2^-17 from any whole
-    // number, since there are 2^16 strata at most; rounding is below 2^-35.
-    let mut rest = stratum as f64;
+    // A machine takes many times as long to divide as to multiply. The reciprocal is too large by less than 2^-32, the quotient
+    // by less than 2^-16, since there are 2^16 strata at most: not enough to reach the next whole number, which is `1 / cells` away.
+    let mut rest = stratum as u64;
     for axis in place {
-        #[expect(clippy::cast_possible_truncation, reason = "rounds down")]
-        let above = f64::from(((rest + 0.5) * axis.reciprocal) as i32);
-        axis.cell = rest - above * axis.cells;
+        let above = (rest * axis.reciprocal) / ONE;
+        axis.cell = (rest - above * axis.cells) as f64;
         rest = above;
     }
 }
+
+/// The one of numbers in fixed point.
+const ONE: u64 = 1 << 32;
 
 /// Where a stratum is along an axis.
 #[derive(Clone, Copy)]
 pub(super) struct Axis {
     pub(super) cell: f64,
     /// How many cells there are.
-    cells: f64,
-    reciprocal: f64,
+    cells: u64,
+    /// In units of 1 over [`ONE`], rounded up.
+    reciprocal: u64,
     /// Bins a cell.
     pub(super) scale: f64,
     /// The number of its first bin among those of all axes.

@@ -2,6 +2,7 @@
 
 use super::adaptation::Adaptation;
 use super::grid::{Axis, enter};
+use crate::block::smaller;
 use crate::evaluate::Wide;
 use crate::integrands::Bin;
 use crate::points::Independent;
@@ -27,6 +28,9 @@ impl Squares {
         (self.count > 0.0).then(|| self.sum / self.count)
     }
 }
+
+/// Numbers as large as this have no digits behind the point, and keep whole ones up to 2^51 in their lowest bits.
+const WHOLE: f64 = 1.5 * (1_u64 << 52) as f64;
 
 /// No bin has this number.
 const UNREAD: u32 = u32::MAX;
@@ -108,19 +112,21 @@ impl<I: Integrand> Visitor for Learner<'_, I> {
         if axes == 0 {
             return;
         }
-        // Signed, as the machine converts them.
-        let last = i32::try_from(self.number - 1).unwrap_or(i32::MAX);
+        let last = u32::try_from(self.number - 1).unwrap_or(u32::MAX);
         let rows = rows.chunks_exact_mut(axes);
         let hits = self.hits[first * axes..].chunks_exact_mut(axes);
         for ((row, hits), jacobian) in rows.zip(hits).zip(&mut self.jacobians[first..]) {
             let mut product = 1.0;
             for ((x, hit), axis) in row.iter_mut().zip(hits).zip(&self.place) {
                 let scaled = (axis.cell + *x) * axis.scale;
+                // Down to a whole number, which is in the lowest bits then: a conversion would check what cannot be. The very end of
+                // a bin may go to either of the two.
+                let shifted = (scaled - 0.5) + WHOLE;
                 #[expect(clippy::cast_possible_truncation, reason = "below the number of bins")]
-                let number = (scaled as i32).min(last);
-                *hit = axis.first + number.cast_unsigned();
+                let number = (shifted.to_bits() as u32).min(last);
+                *hit = axis.first + number;
                 let bin = self.bins[*hit as usize];
-                *x = bin.image(scaled - f64::from(number));
+                *x = bin.image(scaled - smaller(shifted - WHOLE, f64::from(last)));
                 product *= bin.jacobian;
             }
             *jacobian = product;

@@ -6,6 +6,8 @@
 - `knot.xml`: a tube of 70 000 triangles, knotted, in the same room; with `-D face_normals=true` its faces are flat.
 - `sky.xml`: a ground, a cube and three spheres, diffuse, rough metal and glass, under a picture of a sky with a sun.
 - `million.xml`: the tube of 10^6 triangles, for the time to load.
+- `hall_5.xml`, `hall_20.xml`, `hall_100.xml` and `cube_5.xml` and so on: as many lamps below the ceiling of a hall eight times as long as
+  wide and high, or of a cube, over eight boxes.
 
 Parameters (`-D`): `size`, `spp`, `filter`, `max_depth`.
 """
@@ -163,6 +165,30 @@ def sky(file: Path) -> None:
     mitsuba.Bitmap(pixels.astype(np.float32)).write(str(file))
 
 
+def lamps(size: tuple[float, float, float], count: int) -> str:
+    """A room of that size from its middle, with lamps of unequal radiance at random places, seen from one end."""
+    x, y, z = size
+    view = f'origin="{-0.98 * x}, 0, 0" target="{x}, {-0.2 * y}, {0.05 * z}"'
+    cube = '    <shape type="cube"><transform name="to_world">{}</transform>{}<ref id="white"/></shape>\n'
+    lamp = """    <shape type="rectangle">
+        <transform name="to_world"><scale value="0.1"/><rotate x="1" angle="90"/><translate {place}/></transform>
+        <emitter type="area"><rgb name="radiance" value="{radiance:.4f}"/></emitter>
+    </shape>
+"""
+    text = HEAD.format(view=view).replace("39.3077", "70")
+    text += '    <bsdf type="diffuse" id="white"><rgb name="reflectance" value="0.6"/></bsdf>\n'
+    walls = f'<scale x="{x}" y="{y}" z="{z}"/>'
+    text += cube.format(walls, '<boolean name="flip_normals" value="true"/>')
+    for box in range(8):
+        place = f'x="{(-0.9 + 0.225 * box) * x}" y="{-0.9 * y}" z="{(0.5 - box % 2) * z}"'
+        text += cube.format(f'<scale value="{0.05 * y}"/><translate {place}/>', "")
+    random = np.random.default_rng(count)
+    for along, across, radiance in random.random((count, 3)):
+        place = f'x="{(2 * along - 1) * 0.95 * x:.4f}" y="{0.98 * y}" z="{(2 * across - 1) * 0.9 * z:.4f}"'
+        text += lamp.format(place=place, radiance=5 + 20 * radiance)
+    return text
+
+
 def main() -> None:
     if len(sys.argv) != 2:
         raise SystemExit(__doc__)
@@ -174,6 +200,9 @@ def main() -> None:
         "sky": OUTSIDE + SKY,
         "million": INSIDE + ROOM + KNOT.format(file="million.ply"),
     }
+    for count in (5, 20, 100):
+        scenes[f"hall_{count}"] = lamps((8, 1, 1), count)
+        scenes[f"cube_{count}"] = lamps((2, 2, 2), count)
     for name, text in scenes.items():
         (folder / f"{name}.xml").write_text(text + "</scene>\n")
     knot(folder / "knot.ply", 700, 50)

@@ -153,9 +153,9 @@ impl Plan<'_> {
         E: Environment + fmt::Debug + 'static,
     {
         let paths = self.paths()?;
-        let camera = self.camera()?;
-        let filter = AnyFilter::of(self.sensor.film.filter);
-        let filter = filter.map_err(|e| self.sensor.place.error(e))?;
+        let refused = |e: Error| self.sensor.place.error(e);
+        let camera = self.camera().map_err(refused)?;
+        let filter = AnyFilter::of(self.sensor.film.filter).map_err(refused)?;
         let place = &self.description.place;
         let scene = surfaces.scene::<L, E>(environment);
         let scene = scene.map_err(|e| place.error(e))?;
@@ -177,22 +177,18 @@ impl Plan<'_> {
         })
     }
 
-    /// Rays of the camera, all over the picture.
+    /// Rays of the camera, all over the picture, without end.
     fn rays(&self) -> Result<impl Iterator<Item = Ray> + use<>, SceneError> {
-        let camera = self.camera()?;
+        let camera = self.camera().map_err(|e| self.sensor.place.error(e))?;
         let points = Independent::new(0);
-        Ok((0..LOOKED_AT).map(move |index| {
+        Ok((0..).map(move |index| {
             let mut u = points.point(index);
             let film = u.next_2d();
             camera.ray(film, &mut u)
         }))
     }
 
-    fn camera(&self) -> Result<Camera, SceneError> {
-        self.placed_camera().map_err(|e| self.sensor.place.error(e))
-    }
-
-    fn placed_camera(&self) -> Result<Camera, Error> {
+    fn camera(&self) -> Result<Camera, Error> {
         let Sensor {
             film, projection, ..
         } = self.sensor;
@@ -245,9 +241,6 @@ impl Plan<'_> {
         }
     }
 }
-
-/// Rays by which it is found how lights are chosen best.
-const LOOKED_AT: u64 = 256;
 
 /// The objects of a scene, and those that stand in it many times over.
 #[expect(clippy::type_complexity, reason = "two lists, for one call")]

@@ -71,7 +71,7 @@ pub(in crate::path) struct Hit {
 /// Up to so many shapes are swept over: there a sweep of vectors is faster than a tree.
 pub(in crate::path) const FEW: usize = 48;
 
-/// Shapes of any kind are asked one after the other.
+/// Shapes of any kind are asked one after the other: two take as long as eight boxes.
 const ONE_BY_ONE: Cost = Cost {
     node: 1.0,
     leaf: 0.0,

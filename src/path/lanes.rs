@@ -11,8 +11,8 @@ use pulp::Simd;
 /// The widest vectors there are.
 pub(in crate::path) const WIDEST: usize = 16;
 
-/// Whether one instruction for the larger or smaller of two numbers gives the second of them unless the first is so, also
-/// where one is NaN or both are zeros. Those of other machines differ there.
+/// Whether one instruction for the larger or smaller of two numbers gives the second of them unless the first is
+/// larger, or smaller, also where one is NaN or both are zeros. Those of other machines differ there.
 const PICKS_OTHER: bool = cfg!(target_arch = "x86_64");
 
 /// Room for a number for each lane, to be written and read lane by lane.
@@ -501,6 +501,50 @@ impl<S: Simd> Neg for Vector<S> {
             x: -self.x,
             y: -self.y,
             z: -self.z,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pulp::{Arch, WithSimd};
+
+    use super::*;
+
+    /// The larger and the smaller of numbers of all kinds.
+    struct Extremes;
+
+    impl WithSimd for Extremes {
+        type Output = ();
+
+        fn with_simd<S: Simd>(self, simd: S) {
+            let numbers = [
+                f32::NAN,
+                -0.0,
+                0.0,
+                1.0,
+                -1.0,
+                f32::INFINITY,
+                -f32::INFINITY,
+            ];
+            let bits = |number: Real<S>| number.row().0.map(f32::to_bits);
+            for (a, b) in numbers.iter().flat_map(|&a| numbers.map(|b| (a, b))) {
+                let (first, second) = (Real::splat(simd, a), Real::splat(simd, b));
+                let larger = first.gt(second).select(first, second);
+                let smaller = first.lt(second).select(first, second);
+                assert_eq!(bits(first.max(second)), bits(larger), "{a} {b}");
+                assert_eq!(bits(first.min(second)), bits(smaller), "{a} {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_larger_of_two_is_the_other_where_neither_is_larger() {
+        Arch::new().dispatch(Extremes);
+        Extremes.with_simd(pulp::Scalar);
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = pulp::x86::V3::try_new() {
+            Extremes.with_simd(simd);
         }
     }
 }

@@ -12,6 +12,8 @@ struct Seen {
     std_error: DVec3,
     coordinates: f64,
     left_out: Vec<String>,
+    /// Whether its lights are chosen by a tree.
+    by_tree: bool,
 }
 
 const COUNT: u64 = 256;
@@ -54,6 +56,7 @@ fn see(scene: &str, instance: Instance) -> Seen {
         mean: sum / 64.0,
         std_error: squares.map(f64::sqrt) / 64.0,
         coordinates: coordinates as f64 / 64.0,
+        by_tree: format!("{picture:?}").contains("LightTree"),
         left_out,
     }
 }
@@ -131,31 +134,38 @@ fn the_smallest_instance_gives_the_picture_of_the_general_one() {
     }
 }
 
-/// Twenty-four lamps above a ball, without and with a sky: the smallest type draws them by a tree, the general one by
+/// Twenty-four balls that shine over a ground, so many units apart.
+fn lamps(apart: f64) -> String {
+    let lamp = |lamp: u32| {
+        let (x, z) = (f64::from(lamp % 6) - 2.5, f64::from(lamp / 6) - 1.5);
+        format!(
+            r#"<shape type="sphere"><float name="radius" value="0.01"/><transform name="to_world"><translate x="{}" y="-0.5"
+            z="{}"/></transform><emitter type="area"><rgb name="radiance" value="{} 400 200"/></emitter></shape>"#,
+            x * apart,
+            z * apart,
+            100 + lamp % 5 * 1000
+        )
+    };
+    (0..24).map(lamp).collect()
+}
+
+/// Lamps far from one another, without and with a sky: the smallest type draws them by a tree, the general one by
 /// their power. The same test as above for 2 scenes of 3 channels: 4e-6. The tree has the smaller
-/// errors.
+/// errors. Lamps close together are drawn by their power in either.
 #[test]
-fn many_lights_give_the_same_picture_by_a_tree_as_by_power() {
-    let mut lamps: String = (0..24)
-        .map(|lamp| {
-            let (x, z) = (f64::from(lamp % 6) - 2.5, f64::from(lamp / 6) - 1.5);
-            format!(
-                r#"<shape type="rectangle"><transform name="to_world"><scale value="0.1"/><rotate x="1" angle="90"/>
-                <translate x="{x}" y="2" z="{z}"/></transform><emitter type="area"><rgb name="radiance"
-                value="{} 4 2"/></emitter></shape>"#,
-                1 + lamp % 5 * 10
-            )
-        })
-        .collect();
+fn lights_far_apart_give_the_same_picture_by_a_tree_as_by_power() {
     let ground = format!(
         r#"<shape type="rectangle"><transform name="to_world"><rotate x="1" angle="-90"/><scale value="20"/>
         <translate y="-1"/></transform>{WHITE}</shape>"#
     );
+    // Lamps that are seen would be most of the noise.
+    let hidden =
+        r#"<integrator type="path"><boolean name="hide_emitters" value="true"/></integrator>"#;
     let around = r#"<emitter type="constant"><rgb name="radiance" value="0.01"/></emitter>"#;
     for extra in ["", around] {
-        lamps.push_str(extra);
-        let scene = format!(r#"<shape type="sphere">{WHITE}</shape>{ground}{lamps}"#);
+        let scene = format!("{hidden}{ground}{}{extra}", lamps(2.0));
         let [tree, power] = [Instance::Smallest, Instance::General].map(|it| see(&scene, it));
+        assert!(tree.by_tree && !power.by_tree);
         let variance = tree.std_error * tree.std_error + power.std_error * power.std_error;
         let off = (tree.mean - power.mean).abs();
         assert!(
@@ -173,6 +183,8 @@ fn many_lights_give_the_same_picture_by_a_tree_as_by_power() {
             "{parts}"
         );
     }
+    let together = format!("{ground}{}", lamps(0.05));
+    assert!(!see(&together, Instance::Smallest).by_tree);
 }
 
 /// A diffuse ball in a constant environment: two coordinates for the film, and where a path hits the ball two for its next

@@ -27,7 +27,7 @@ pub(super) struct Needs {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Lights {
     None,
-    /// Any number, chosen by their power.
+    /// Chosen by their power: one, or as many as there may be.
     ByPower,
     /// Two or more: a look at the scene tells whether by their power or by a [tree](crate::path::light::LightTree).
     Several,
@@ -49,7 +49,7 @@ impl Lights {
 }
 
 impl Needs {
-    /// Everything.
+    /// Everything; any number of lights can be chosen by their power.
     pub(super) const ALL: Self = Self {
         shading: true,
         materials: true,

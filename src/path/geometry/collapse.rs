@@ -205,7 +205,14 @@ mod tests {
         let ways = cuts(binary, place, LANES).into_iter().skip(1);
         let within = ways.map(|way| way.iter().map(|&place| least(binary, place, cost).0).sum());
         let node = surface * f64::from(cost.node) + within.fold(f64::INFINITY, f64::min);
-        (if shapes > 8 { node } else { node.min(leaf) }, shapes)
+        (
+            if shapes as usize > LANES {
+                node
+            } else {
+                node.min(leaf)
+            },
+            shapes,
+        )
     }
 
     /// What a collapse costs from a box on.

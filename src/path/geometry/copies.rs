@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Mat3A, Vec3A};
 
+use super::collapse::Cost;
 use super::tree::Tree;
-use super::{Geometry, Hit, ONE_BY_ONE, around};
+use super::{Geometry, Hit, around};
 use crate::Error;
 use crate::path::Shading;
 use crate::path::ray::{Ray, Surface, gamma};
@@ -16,6 +17,13 @@ pub(super) struct Copies {
     copies: Vec<Copied>,
     tree: Tree,
 }
+
+/// In a copy a ray walks through a tree again.
+const COPY: Cost = Cost {
+    node: 1.0,
+    leaf: 0.0,
+    shape: 4.0,
+};
 
 /// A group of shapes in another place.
 #[derive(Clone, Debug)]
@@ -124,7 +132,7 @@ impl Copies {
             return None;
         }
         let bounds: Vec<_> = copies.iter().map(Copied::bounds).collect();
-        let tree = Tree::around(&bounds, ONE_BY_ONE);
+        let tree = Tree::around(&bounds, COPY);
         Some(Self { copies, tree })
     }
 

@@ -1,7 +1,8 @@
 //! Lists that rays walk through, on large pages of memory.
 
+use bytemuck::Pod;
 #[cfg(target_os = "linux")]
-use bytemuck::{Pod, cast_slice, cast_slice_mut};
+use bytemuck::{cast_slice, cast_slice_mut};
 #[cfg(target_os = "linux")]
 use memmap2::{Advice, MmapMut};
 
@@ -20,18 +21,28 @@ pub(super) enum Pages<T> {
 #[cfg(target_os = "linux")]
 const LARGE: usize = 1 << 21;
 
+/// The shortest list that has a page of its own, in bytes: it leaves three quarters of the page unused.
 #[cfg(target_os = "linux")]
+const SHORTEST: usize = LARGE / 4;
+
 impl<T: Pod> Pages<T> {
     pub(super) fn new(items: impl ExactSizeIterator<Item = T>) -> Self {
-        // What fills no eighth of a page is found without.
-        let bytes = items.len() * size_of::<T>();
-        if bytes < LARGE / 8 {
-            return Self::List(items.collect());
+        #[cfg(target_os = "linux")]
+        {
+            let bytes = items.len() * size_of::<T>();
+            // A page more, to begin where a page does.
+            let room = bytes.next_multiple_of(LARGE) + LARGE;
+            if bytes >= SHORTEST
+                && let Ok(map) = MmapMut::map_anon(room)
+            {
+                return Self::on(map, bytes, items);
+            }
         }
-        // A page more, to begin where a page does.
-        let Ok(mut map) = MmapMut::map_anon(bytes.next_multiple_of(LARGE) + LARGE) else {
-            return Self::List(items.collect());
-        };
+        Self::List(items.collect())
+    }
+
+    #[cfg(target_os = "linux")]
+    fn on(mut map: MmapMut, bytes: usize, items: impl Iterator<Item = T>) -> Self {
         // A system that has no large pages leaves it at small ones.
         let _ = map.advise(Advice::HugePage);
         let start = map.as_ptr().align_offset(LARGE);
@@ -48,21 +59,9 @@ impl<T: Pod> Pages<T> {
     pub(super) fn as_slice(&self) -> &[T] {
         match self {
             Self::List(list) => list,
+            #[cfg(target_os = "linux")]
             Self::Map(map, range) => cast_slice(&map[range.clone()]),
         }
-    }
-}
-
-#[cfg(not(target_os = "linux"))]
-impl<T> Pages<T> {
-    pub(super) fn new(items: impl Iterator<Item = T>) -> Self {
-        Self::List(items.collect())
-    }
-
-    #[inline]
-    pub(super) fn as_slice(&self) -> &[T] {
-        let Self::List(list) = self;
-        list
     }
 }
 
@@ -72,12 +71,16 @@ mod tests {
 
     #[test]
     fn a_list_is_what_it_was_made_of_on_pages_of_any_size() {
-        for count in [0, 1, 1000, 40_000, 1_000_000] {
-            let pages = Pages::new(0..count);
+        for count in [0_u32, 1, 1000, 131_071, 131_072, 1_000_000] {
+            let pages = Pages::new((0..count).collect::<Vec<_>>().into_iter());
             assert!(pages.as_slice().iter().copied().eq(0..count), "{count}");
             #[cfg(target_os = "linux")]
-            if let Pages::Map(..) = pages {
-                assert_eq!(pages.as_slice().as_ptr().align_offset(LARGE), 0);
+            match pages {
+                Pages::List(_) => assert!(count < 131_072, "{count}"),
+                Pages::Map(..) => {
+                    assert!(count >= 131_072, "{count}");
+                    assert_eq!(pages.as_slice().as_ptr().align_offset(LARGE), 0);
+                }
             }
         }
     }

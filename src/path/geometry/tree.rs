@@ -179,10 +179,13 @@ impl Tree {
     ) -> Option<InLeaf> {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if let Some(simd) = self.simd {
-            return simd.vectorize(
-                #[inline(always)]
-                || self.walk_to_nearest(&Vectors::new(simd, ray), limit, leaves),
-            );
+            return simd.vectorize(ToNearest(InVectors {
+                simd,
+                tree: self,
+                ray,
+                limit,
+                leaves,
+            }));
         }
         self.walk_to_nearest(&Plain::new(ray), limit, leaves)
     }
@@ -192,10 +195,13 @@ impl Tree {
     pub(super) fn any_in_leaves(&self, ray: &Ray, limit: f32, leaves: &mut impl Leaves) -> bool {
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if let Some(simd) = self.simd {
-            return simd.vectorize(
-                #[inline(always)]
-                || self.walk_to_any(&Vectors::new(simd, ray), limit, leaves),
-            );
+            return simd.vectorize(ToAny(InVectors {
+                simd,
+                tree: self,
+                ray,
+                limit,
+                leaves,
+            }));
         }
         self.walk_to_any(&Plain::new(ray), limit, leaves)
     }
@@ -251,6 +257,47 @@ impl Tree {
             next = stack.pop(limit);
         }
         false
+    }
+}
+
+/// A walk in the vectors of the machine. Not a closure: compilers do not always make it part of the function that is compiled for
+/// them, and then every operation is a call.
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+struct InVectors<'a, L> {
+    simd: pulp::x86::V3,
+    tree: &'a Tree,
+    ray: &'a Ray,
+    limit: f32,
+    leaves: &'a mut L,
+}
+
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+struct ToNearest<'a, L>(InVectors<'a, L>);
+
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+impl<L: Leaves> pulp::NullaryFnOnce for ToNearest<'_, L> {
+    type Output = Option<InLeaf>;
+
+    #[inline(always)]
+    fn call(self) -> Option<InLeaf> {
+        let Self(walk) = self;
+        let probe = Vectors::new(walk.simd, walk.ray);
+        walk.tree.walk_to_nearest(&probe, walk.limit, walk.leaves)
+    }
+}
+
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+struct ToAny<'a, L>(InVectors<'a, L>);
+
+#[cfg(all(feature = "simd", target_arch = "x86_64"))]
+impl<L: Leaves> pulp::NullaryFnOnce for ToAny<'_, L> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let Self(walk) = self;
+        let probe = Vectors::new(walk.simd, walk.ray);
+        walk.tree.walk_to_any(&probe, walk.limit, walk.leaves)
     }
 }
 

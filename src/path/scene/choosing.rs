@@ -1,40 +1,58 @@
 //! Whether a tree chooses among lights so well that it pays.
 
 use super::Surfaces;
-use crate::Sampler;
 use crate::path::bsdf::Bsdf;
 use crate::path::frame::{Frame, cosine_hemisphere, singles};
 use crate::path::light::{AreaLights, Emitter, Illumination, Light, LightTree};
 use crate::path::{Ray, Surface};
 use crate::points::{Independent, PointSet};
+use crate::{Error, Sampler};
 
-/// How much smaller the second moment of light drawn by a tree must be, for the time that it takes to be worth it. Less of the noise of a
-/// picture goes: there is other noise, and good points choose evenly among few lights by themselves. Lamps in halls and cubes with ratios
-/// of 2.7 to 13 had 1.03 to 4.5 times the efficiency by a tree, scenes with ratios below 1 had 0.7 times: see `benches/README.md`.
+/// How much smaller the second moment of light drawn by a tree must be, for the time that it takes to be worth it: a tree has 0.7 to 0.9
+/// of the rate, and a picture gains less than a sample of its light, having other noise. What it gained is in `benches/README.md`.
 const GAIN: f64 = 2.0;
 
-/// Points of the lights drawn by each of both for every surface that is looked at.
+/// Rays that are followed.
+const RAYS: usize = 256;
+
+/// Points of the lights drawn by each of both for every surface that is met.
 const DRAWN: u32 = 16;
 
+/// Of the coordinates of those points.
+const SEED: u64 = 1;
+
+/// The same lights, chosen in two ways.
+struct Both {
+    by_power: AreaLights,
+    by_tree: LightTree,
+}
+
+impl Both {
+    fn of(mut emitters: Vec<Emitter>) -> Result<Self, Error> {
+        emitters.iter_mut().for_each(Emitter::by_solid_angle);
+        Ok(Self {
+            by_power: AreaLights::new(emitters.clone())?,
+            by_tree: LightTree::new(emitters)?,
+        })
+    }
+}
+
 impl<B: Bsdf> Surfaces<B> {
-    /// Whether a [tree](LightTree) is to choose among the lights rather than their power. For what some rays meet, and what light meets
-    /// once it is scattered there, both draw points of the lights that shine there; second moments of what arrives are compared.
+    /// Whether a [tree](LightTree) is to choose among the lights, rather than their power. On the surfaces that the first of some
+    /// rays meet, and those that light meets once it is scattered there, points of the lights are drawn in both ways, and the second
+    /// moments of what arrives are compared. Where nothing arrives, by power.
     pub(crate) fn want_light_tree(&self, rays: impl Iterator<Item = Ray>) -> bool {
-        // By a tree each path would ask for itself, which takes three times as long.
+        // A tree takes lights out of the lanes, and paths three times as long: of four such scenes one had a better picture for the
+        // time. Decided alike without `simd`.
         if self.emitters.len() < 2 || self.lights_in_lanes {
             return false;
         }
-        let mut emitters = self.emitters.clone();
-        emitters.iter_mut().for_each(Emitter::by_solid_angle);
-        let (Ok(by_power), Ok(tree)) =
-            (AreaLights::new(emitters.clone()), LightTree::new(emitters))
-        else {
+        let Ok(both) = Both::of(self.emitters.clone()) else {
             return false;
         };
-        let both = (by_power, tree);
-        let points = Independent::new(0);
-        let mut moments = [0.0; 2];
-        for (index, mut ray) in (0..).zip(rays) {
+        let points = Independent::new(SEED);
+        let (mut by_power, mut by_tree) = (0.0, 0.0);
+        for (index, mut ray) in (0..).zip(rays.take(RAYS)) {
             let mut u = points.point(index);
             for _ in 0..2 {
                 let Some(hit) = self.geometry.nearest(&ray) else {
@@ -45,13 +63,14 @@ impl<B: Bsdf> Surfaces<B> {
                     surface.normal = -surface.normal;
                 }
                 for _ in 0..DRAWN {
-                    for drawn in [
-                        both.0.sample(&surface, &mut u),
-                        both.1.sample(&surface, &mut u),
-                    ] {
-                        let found = drawn.and_then(|light| self.moments(&light, &both, &surface));
-                        let [a, b] = found.unwrap_or_default();
-                        moments = [moments[0] + a, moments[1] + b];
+                    let drawn = [
+                        both.by_power.sample(&surface, &mut u),
+                        both.by_tree.sample(&surface, &mut u),
+                    ];
+                    for light in drawn.iter().flatten() {
+                        let [power, tree] = self.moments(light, &both, &surface);
+                        by_power += power;
+                        by_tree += tree;
                     }
                 }
                 let inside = cosine_hemisphere(singles(u.next_2d()));
@@ -62,34 +81,32 @@ impl<B: Bsdf> Surfaces<B> {
                 };
             }
         }
-        moments[0] > GAIN * moments[1]
+        by_power > GAIN * by_tree
     }
 
-    /// What light drawn by either, half and half, adds to the second moments of light drawn by the one and by the other.
-    fn moments(
-        &self,
-        light: &Illumination,
-        both: &(AreaLights, LightTree),
-        surface: &Surface,
-    ) -> Option<[f64; 2]> {
-        let ray = light.way.ray;
-        let hit = self.geometry.nearest(&ray)?;
-        let emitter = self.owners[hit.part].emitter(hit.triangle)?;
+    /// What light drawn in both ways, half and half, adds to the second moments of light drawn by power alone and by the tree alone.
+    fn moments(&self, light: &Illumination, both: &Both, surface: &Surface) -> [f64; 2] {
+        const NOTHING: [f64; 2] = [0.0; 2];
+        let (ray, length) = (light.way.ray, light.way.length);
+        let Some(hit) = self.geometry.nearest(&ray) else {
+            return NOTHING;
+        };
         let there = hit.surface;
-        if (there.point - ray.origin).length() < 0.999 * light.way.length {
-            return None;
-        }
-        let by_power = both.0.emitted(emitter, surface.point, &there);
-        let by_tree = both.1.emitted(emitter, surface.point, &there);
+        // Another light is at another distance.
+        let is_drawn = ((there.point - ray.origin).length() - length).abs() < 1e-3 * length;
+        let Some(emitter) = self.owners[hit.part].emitter(hit.triangle) else {
+            return NOTHING;
+        };
+        let by_power = both.by_power.emitted(emitter, surface.point, &there);
+        let by_tree = both.by_tree.emitted(emitter, surface.point, &there);
         let cosine = ray.direction.dot(surface.normal).max(0.0);
         let arriving = f64::from(by_power.radiance.element_sum() * cosine);
+        if !(is_drawn && arriving > 0.0) {
+            return NOTHING;
+        }
         let densities = [by_power, by_tree].map(|emission| f64::from(emission.density));
         let density = 0.5 * (densities[0] + densities[1]);
-        let moments = densities.map(|one| arriving * arriving / (one * density));
-        moments
-            .iter()
-            .all(|moment| moment.is_finite())
-            .then_some(moments)
+        densities.map(|one| arriving * arriving / (one * density))
     }
 }
 

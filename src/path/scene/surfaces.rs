@@ -20,7 +20,7 @@ pub(crate) struct Surfaces<B> {
     pub(super) owners: Vec<Owner>,
     pub(super) bsdfs: Vec<B>,
     pub(super) emitters: Vec<Emitter>,
-    /// Whether all lights are such as go in lanes then, if their type does.
+    /// Whether paths go many at once, and all lights are such as are drawn in lanes then, unless their type is not.
     pub(super) lights_in_lanes: bool,
 }
 

@@ -72,7 +72,8 @@ fn cone((a, wide): (Vec3A, f32), (b, other): (Vec3A, f32)) -> (Vec3A, f32) {
     if other > wide {
         return cone((b, other), (a, wide));
     }
-    let between = a.dot(b).clamp(-1.0, 1.0).acos();
+    // By the cosine alone small angles would have few digits.
+    let between = a.cross(b).length().atan2(a.dot(b));
     if between + other <= wide {
         return (a, wide);
     }

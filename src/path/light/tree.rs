@@ -18,9 +18,11 @@ use group::Group;
 /// A tree over the emitters bounds for each group where it is, which way it shines and how much; from the root
 /// down, one of two branches is taken in proportion to the bound of its irradiance.[^conty] Where
 /// [`AreaLights`](super::AreaLights) draw a bright light far away or one that faces elsewhere, this draws one that is seen.
-/// It takes longer, and pays where lights are far from one another: small lamps in a hall eight times as long as wide
-/// and high had 1.6 to 2.2 times the efficiency, one over relative mean square error and time, with 5 to 40 of them,
-/// 1.3 to 1.4 with 100 and 0.9 with 2; in a cube of a room 0.9 to 1.2 with up to 10, and 0.8 with 20 to 100.
+/// It takes longer, and pays where lights are far from one another: small lamps of unequal radiance in a hall eight times as long as wide
+/// and high had 1.2, 2.5 and 4.0 times the efficiency, one over mean squared error and time, with 5, 20 and 100 of them,
+/// in a cube of a room 1.7, 2.2 and 2.1; two lamps close to one another 0.7. In scenes of up to 48 shapes whose lights are flat and
+/// have one colour each, paths by a tree take three times as long, and of four such scenes one gained. For scene files a look at the
+/// scene decides, which no other lights are drawn for (`Description::load`).
 ///
 /// Two coordinates draw a point, however many emitters there are.
 ///

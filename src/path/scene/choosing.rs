@@ -8,9 +8,9 @@ use crate::path::{Ray, Surface};
 use crate::points::{Independent, PointSet};
 use crate::{Error, Sampler};
 
-/// How much smaller the second moment of light drawn by a tree must be, for the time that it takes to be worth it: a tree has 0.7 to 0.9
+/// How much smaller the second moment of light drawn by a tree must be, for the time that it takes to be worth it: a tree has 0.45 to 0.7
 /// of the rate, and a picture gains less than a sample of its light, having other noise. What it gained is in `benches/README.md`.
-const GAIN: f64 = 2.0;
+const GAIN: f64 = 2.5;
 
 /// Rays that are followed.
 const RAYS: usize = 256;

@@ -44,7 +44,7 @@
 //!   origin as 8192 times its size, where its surfaces are known to a 256th of it; an object, 2^21 times. What is
 //!   beyond is [refused](Scene::new). Of shapes that coincide, either may be the one that is seen.
 //! - Colour is linear red, green and blue. No media, no spectra.
-//! - Boxes around many shapes come from the crate `obvhs`; up to 48 shapes are swept over instead, and many paths are followed among
+//! - Boxes around many shapes come from the crate `obvhs`; up to 128 shapes are swept over instead, and many paths are followed among
 //!   them, and among meshes and copies, at once, with the same result to the bit. The more of the scene is flat, scatters light
 //!   ideally diffusely and is lit by what is flat, the faster.
 

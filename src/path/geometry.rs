@@ -68,8 +68,8 @@ pub(in crate::path) struct Hit {
     pub(in crate::path) copy: Option<usize>,
 }
 
-/// Up to so many shapes are swept over: there a sweep of vectors is faster than a tree.
-pub(in crate::path) const FEW: usize = 48;
+/// Up to so many shapes are swept over: there a sweep of vectors is faster than a tree, above all where many paths go at once.
+pub(in crate::path) const FEW: usize = 128;
 
 /// Shapes of any kind are asked one after the other: two take as long as eight boxes.
 const ONE_BY_ONE: Cost = Cost {

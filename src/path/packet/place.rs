@@ -8,7 +8,7 @@ use crate::path::lanes::{Real, Row, Vector, WIDEST};
 use crate::path::shape::Flat;
 
 /// At most so many shapes: a power of two.
-pub(super) const MOST: usize = 64;
+pub(super) const MOST: usize = 128;
 
 type Column = [f32; MOST];
 

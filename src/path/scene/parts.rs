@@ -3,7 +3,6 @@
 use glam::Affine2;
 
 use crate::Error;
-use crate::path::geometry::FEW;
 use crate::path::light::Emitter;
 use crate::path::object::{Object, Radiance};
 use crate::path::resolution::check_object;
@@ -117,11 +116,14 @@ fn index(index: usize) -> Result<u32, Error> {
     }
 }
 
-/// Whether there are so few shapes and triangles that looking at all of them is best.
+/// Up to so many triangles and shapes, a sweep over all is faster than a tree of the triangles.
+const APART: usize = 48;
+
+/// Whether meshes are best taken apart.
 pub(super) fn are_few<B>(objects: &[Object<B>]) -> bool {
     let count = |object: &Object<B>| {
         let triangles = object.meshes.iter().map(|mesh| mesh.triangles().len());
         object.shapes.len() + triangles.sum::<usize>()
     };
-    objects.iter().map(count).sum::<usize>() <= FEW
+    objects.iter().map(count).sum::<usize>() <= APART
 }

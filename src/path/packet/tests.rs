@@ -8,6 +8,7 @@ use crate::path::bsdf::{
     Plastic, RoughConductor, Roughness, Tint,
 };
 use crate::path::frame::single;
+use crate::path::geometry::FEW;
 use crate::path::light::{
     AreaLights, Background, Constant, DirectionalLight, Emission, Emitter, Environment,
     Illumination, Light, LightTree, NoEnvironment, NoLight, PointLight, Sky, Source, Surroundings,
@@ -487,8 +488,10 @@ fn packets_give_the_bits_of_single_paths_among_lights_of_other_kinds() {
 
 #[test]
 fn scenes_of_many_shapes_have_no_packets() {
-    let balls = (0_u8..50).map(|k| Sphere::new([f32::from(k), 0.0, 0.0], 0.4).unwrap());
-    let object = Object::<Lambertian>::new(balls, Lambertian::new([0.5; 3]).unwrap());
-    let scene: Scene<_, NoLight, _> = Scene::new(vec![object], NoEnvironment).unwrap();
-    assert!(scene.packet().is_none());
+    for count in [FEW, FEW + 1] {
+        let balls = (0..count).map(|k| Sphere::new([k as f32, 0.0, 0.0], 0.4).unwrap());
+        let object = Object::<Lambertian>::new(balls, Lambertian::new([0.5; 3]).unwrap());
+        let scene: Scene<_, NoLight, _> = Scene::new(vec![object], NoEnvironment).unwrap();
+        assert_eq!(scene.packet().is_some(), count == FEW);
+    }
 }

@@ -28,7 +28,7 @@ use crate::Sampler;
 pub(in crate::path) use optics::{Emitted, FlatLight, Law, Optics};
 
 use near::Near;
-use place::{MOST, Table};
+use place::Table;
 use solids::Solids;
 use sweep::Shapes;
 use walk::Walk;
@@ -104,9 +104,6 @@ impl Packet {
         let (flats, spheres) = (&sweep.flat_shapes, &sweep.ball_shapes);
         // Which part a lane is at is kept in 32 bits, as the trees keep triangles and copies.
         u32::try_from(parts).ok()?;
-        if primitives.len() > MOST {
-            return None;
-        }
         let known: Vec<_> = (0..parts).map(optics).collect();
         let laws = || known.iter().map(|optics| &optics.law);
         let mut packet = Self {

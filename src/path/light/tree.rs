@@ -20,7 +20,7 @@ use group::Group;
 /// [`AreaLights`](super::AreaLights) draw a bright light far away or one that faces elsewhere, this draws one that is seen.
 /// It takes longer, and pays where lights are far from one another: small lamps of unequal radiance in a hall eight times as long as wide
 /// and high had 1.2, 2.5 and 4.0 times the efficiency, one over mean squared error and time, with 5, 20 and 100 of them,
-/// in a cube of a room 1.7, 2.2 and 2.1; two lamps close to one another 0.7. That is with paths one by one. In scenes of up to 128 shapes
+/// in a cube of a room 1.7, 2.2 and 2.1; a lamp of 128 triangles beside another 0.7. That is with paths one by one. In scenes of up to 128 shapes
 /// whose lights are flat and have one colour each, paths by a tree take three times as long: there it was 0.6 to 1.5.
 /// What reads scene files takes a look at the scene to decide.
 ///

@@ -4,11 +4,12 @@ use glam::Vec3A;
 use pulp::Simd;
 
 use super::optics::{DARK, Emitted, Optics};
+use crate::path::geometry::FEW;
 use crate::path::lanes::{Real, Row, Vector, WIDEST};
 use crate::path::shape::Flat;
 
-/// At most so many shapes: a power of two.
-pub(super) const MOST: usize = 128;
+/// Room for as many shapes as are swept over: a power of two.
+const MOST: usize = FEW.next_power_of_two();
 
 type Column = [f32; MOST];
 

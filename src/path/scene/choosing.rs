@@ -21,7 +21,7 @@ const RAYS: usize = 256;
 /// Points of the lights drawn by each of both for every surface that is met.
 const DRAWN: u32 = 16;
 
-/// Of the coordinates of those points.
+/// Of the coordinates of those points; another than that of the rays.
 const SEED: u64 = 1;
 
 /// The same lights, chosen in two ways.
@@ -124,19 +124,17 @@ mod tests {
     use super::*;
     use crate::path::Object;
     use crate::path::bsdf::Lambertian;
-    use crate::path::shape::{Sphere, cuboid};
+    use crate::path::shape::{Flat, Primitive, Sphere, cuboid};
 
     /// Lamps above a floor, one as bright as the other, at the given distances.
-    fn wanted(places: &[f32]) -> bool {
+    fn wanted<P: Into<Primitive>>(places: &[f32], lamp: impl Fn(f32) -> P) -> bool {
         let white = Lambertian::new([0.5; 3]).unwrap();
         let floor = cuboid(
             [0.0, -2.0, 0.0],
             [[100.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 5.0]],
         )
         .unwrap();
-        let lamps = places
-            .iter()
-            .map(|&x| Sphere::new([x, 0.0, 0.0], 0.1).unwrap());
+        let lamps = places.iter().map(|&x| lamp(x));
         let lamps = Object::<Lambertian>::new(lamps, white)
             .emitting([1.0; 3])
             .unwrap();
@@ -147,13 +145,33 @@ mod tests {
         }))
     }
 
+    fn apart(count: u8) -> Vec<f32> {
+        let step = 200.0 / f32::from(count);
+        let place = |k: u8| step * (f32::from(k) + 0.5) - 100.0;
+        (0..count).map(place).collect()
+    }
+
+    fn ball(x: f32) -> Sphere {
+        Sphere::new([x, 0.0, 0.0], 0.1).unwrap()
+    }
+
+    /// One that goes in lanes.
+    fn square(x: f32) -> Flat {
+        Flat::parallelogram([x, 0.0, 0.0], [0.2, 0.0, 0.0], [0.0, 0.0, 0.2]).unwrap()
+    }
+
     #[test]
     fn a_tree_is_wanted_for_lamps_far_from_one_another() {
-        let apart: Vec<f32> = (0_u8..20).map(|k| 10.0 * f32::from(k) - 95.0).collect();
-        assert!(wanted(&apart));
-        let together: Vec<f32> = apart.iter().map(|x| 0.01 * x).collect();
-        assert!(!wanted(&together));
-        assert!(!wanted(&apart[..1]));
-        assert!(!wanted(&[]));
+        assert!(wanted(&apart(20), ball));
+        let together: Vec<f32> = apart(20).iter().map(|x| 0.01 * x).collect();
+        assert!(!wanted(&together, ball));
+        assert!(!wanted(&apart(1), ball));
+        assert!(!wanted(&[], ball));
+    }
+
+    #[test]
+    fn lamps_stay_in_lanes_unless_a_tree_gains_much() {
+        assert!(wanted(&apart(5), ball) && !wanted(&apart(5), square));
+        assert!(wanted(&apart(20), square));
     }
 }

@@ -26,6 +26,8 @@ mod until;
 mod vegas;
 
 pub use average::Average;
+#[cfg(all(feature = "path", feature = "simd"))]
+pub(crate) use average::whole;
 pub use bounded::Bounded;
 pub use median::Median;
 pub use monte_carlo::MonteCarlo;

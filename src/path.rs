@@ -62,6 +62,7 @@ mod object;
 #[cfg(feature = "simd")]
 mod packet;
 mod pictures;
+mod pixels;
 mod place;
 mod radiance;
 mod ray;
@@ -82,6 +83,7 @@ pub use frame::Frame;
 pub use image::Image;
 pub use object::{Instances, Object};
 pub use pictures::Pictures;
+pub use pixels::Share;
 pub use place::{Place, Spot};
 pub use radiance::Paths;
 pub use ray::{Ray, Surface, gamma};

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use estimand::mitsuba::Picture;
+use estimand::path::Share;
 use estimand::points::PointSet;
 use estimand::{each, hash};
 
@@ -21,6 +22,9 @@ const TICK: Duration = Duration::from_millis(100);
 /// How often work is saved at most, and how many times longer than saving it must have gone on.
 const SAVE: Duration = Duration::from_secs(5);
 const SAVE_RATIO: u32 = 20;
+
+/// How many paths are followed at once, about: many, since lanes are idle at the end, but little work to be lost.
+const TOGETHER: u64 = 4096;
 
 /// Tells the seed of the pilot from that of the picture.
 const DEALING: u64 = 0x6465_616c;
@@ -161,23 +165,35 @@ impl Job<'_> {
         }
         let y = u32::try_from(y).map_err(|e| e.to_string())?;
         let mut row = Row::default();
-        for x in 0..self.size[0] {
+        let mut x = 0;
+        while x < self.size[0] {
             if self.stop.load(Ordering::Relaxed) {
                 return Ok(false);
             }
-            let position = [x, y];
-            let samples = counts.of(position, self.size);
-            let points = self
-                .points
-                .of_pixel(position, seed, samples)
-                .map_err(|e| e.to_string())?;
-            let estimate = self
-                .picture
-                .average(position, self.size, &*points, samples)
-                .map_err(|e| format!("pixel ({x}, {y}): {e}"))?;
-            row.mean.push(estimate.mean.to_array());
-            row.paths += estimate.used;
-            row.rejected += estimate.rejected;
+            let mut some = Vec::new();
+            let mut paths = 0;
+            while x < self.size[0] && paths < TOGETHER {
+                let position = [x, y];
+                let samples = counts.of(position, self.size);
+                let points = self.points.of_pixel(position, seed, samples);
+                some.push((position, points.map_err(|e| e.to_string())?, samples));
+                paths = paths.saturating_add(samples);
+                x += 1;
+            }
+            let shares: Vec<_> = (some.iter())
+                .map(|(position, points, count)| Share {
+                    position: *position,
+                    points: &**points,
+                    count: *count,
+                })
+                .collect();
+            let outcomes = self.picture.averages(self.size, &shares);
+            for (outcome, [x, y]) in outcomes.into_iter().zip(some.iter().map(|some| some.0)) {
+                let estimate = outcome.map_err(|e| format!("pixel ({x}, {y}): {e}"))?;
+                row.mean.push(estimate.mean.to_array());
+                row.paths += estimate.used;
+                row.rejected += estimate.rejected;
+            }
         }
         lock(state).add(at, row);
         Ok(true)

@@ -91,6 +91,6 @@ impl<P: PointSet> Tallied for Average<P> {
 tallied!([P: PointSet] Average<P>);
 
 /// How many points of `points` to take for `count`: all of a finite set.
-pub(super) fn whole(points: &impl PointSet, count: u64) -> u64 {
+pub(crate) fn whole(points: &impl PointSet, count: u64) -> u64 {
     points.size().filter(|_| count > 0).unwrap_or(count)
 }

@@ -10,7 +10,7 @@ use crate::path::filter::Filter;
 use crate::path::light::{Environment, Light};
 use crate::path::roulette::Steps;
 use crate::path::sensor::Sensor;
-use crate::path::{Allocation, Unfinished, View};
+use crate::path::{Allocation, Share, Unfinished, View};
 use crate::points::PointSet;
 use crate::{Average, Error, Estimate, Estimator, Incomplete, NonFinite, Sampler};
 
@@ -29,6 +29,17 @@ pub trait Picture: Sync + fmt::Debug {
         points: &dyn PointSet,
         count: u64,
     ) -> Result<Estimate<DVec3>, Incomplete<DVec3>>;
+
+    /// The same for several pixels at once, which is faster: see [`View::averages`].
+    ///
+    /// # Errors
+    ///
+    /// As there.
+    fn averages(
+        &self,
+        size: [u32; 2],
+        shares: &[Share<&dyn PointSet>],
+    ) -> Vec<Result<Estimate<DVec3>, Incomplete<DVec3>>>;
 
     /// How samples are to be dealt to the pixels, as a pilot shows: see [`View::allocate_while`].
     ///
@@ -78,6 +89,14 @@ where
         Average::new(points, count)
             .non_finite(NonFinite::Reject)
             .estimate(&self.pixel(position, size))
+    }
+
+    fn averages(
+        &self,
+        size: [u32; 2],
+        shares: &[Share<&dyn PointSet>],
+    ) -> Vec<Result<Estimate<DVec3>, Incomplete<DVec3>>> {
+        self.averages(size, shares, NonFinite::Reject)
     }
 
     fn allocate_while(

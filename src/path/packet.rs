@@ -60,9 +60,6 @@ pub(in crate::path) struct Packet {
 
 /// What packets ask of a view, most of it one lane at a time.
 pub(in crate::path) trait Single<U> {
-    /// Where the path of a point begins.
-    fn start(&self, u: &mut U) -> Start;
-
     /// What the law at a point does for a pair of directions.
     fn evaluate(&self, at: &Hit, out: Vec3A, into: Vec3A) -> Scattering;
 
@@ -167,7 +164,8 @@ impl Packet {
         Some(packet)
     }
 
-    /// What [`Paths::radiance`] gives for each of the points, times the weight that its start has.
+    /// What [`Paths::radiance`] gives for each of the points, times the weight that its start has; `start` tells where the path of a point
+    /// begins.
     ///
     /// The view is behind a pointer, and it is not inlined, so that the loop is compiled for every kind of sampler, but not of
     /// view.
@@ -176,15 +174,16 @@ impl Packet {
         &self,
         paths: Paths,
         single: &dyn Single<U>,
+        start: &dyn Fn(usize, &mut U) -> Start,
         points: &mut [U],
         values: &mut [Vec3],
     ) {
         let asks = self.asks_lights || self.asks_around;
         let plain = self.solids.is_none() && !self.others && !asks && single.sky().is_none();
         if plain {
-            self.walk::<U, true>(paths, single, points, values);
+            self.walk::<U, true>(paths, single, start, points, values);
         } else {
-            self.walk::<U, false>(paths, single, points, values);
+            self.walk::<U, false>(paths, single, start, points, values);
         }
     }
 
@@ -193,6 +192,7 @@ impl Packet {
         &self,
         paths: Paths,
         single: &dyn Single<U>,
+        start: &dyn Fn(usize, &mut U) -> Start,
         points: &mut [U],
         values: &mut [Vec3],
     ) {
@@ -201,6 +201,7 @@ impl Packet {
             paths,
             single,
             sky: single.sky(),
+            start,
             points,
             values,
         });

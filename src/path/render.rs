@@ -50,7 +50,7 @@ const FAR_AHEAD: u32 = 34;
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Pixel<'_, B, L, E, C, F> {
     /// The ray of a path, and what its radiance counts.
     #[inline]
-    fn start<S: Sampler>(&self, u: &mut S) -> Start {
+    pub(in crate::path) fn start<S: Sampler>(&self, u: &mut S) -> Start {
         let seen = self.filter.sample(self.position, self.size, u.next_2d());
         let film = core::array::from_fn(|axis| seen.point[axis] / f64::from(self.size[axis]));
         Start {
@@ -71,10 +71,6 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Pixel<'_, B, L, E,
 impl<U: Sampler, B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Single<U>
     for Pixel<'_, B, L, E, C, F>
 {
-    fn start(&self, u: &mut U) -> Start {
-        Pixel::start(self, u)
-    }
-
     fn evaluate(&self, at: &Hit, out: Vec3A, into: Vec3A) -> Scattering {
         let vertex = self.scene.vertex(*at);
         vertex.bsdf.evaluate(&vertex.surface, out, into)
@@ -114,7 +110,7 @@ impl<U: Sampler, B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Single
 impl<B, L, E, C, F> Pixel<'_, B, L, E, C, F> {
     /// The scene for many paths at once, if it is one of those and the paths are too.
     #[inline]
-    fn packet(&self) -> Option<&Packet> {
+    pub(in crate::path) fn packet(&self) -> Option<&Packet> {
         if self.paths.hides_lights {
             return None;
         }
@@ -139,7 +135,8 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
     fn evaluate_many<S: Sampler>(&self, samplers: &mut [S], values: &mut [Vec3]) {
         #[cfg(feature = "simd")]
         if let Some(packet) = self.packet() {
-            return packet.radiance(self.paths, self, samplers, values);
+            let start = |_, u: &mut S| self.start(u);
+            return packet.radiance(self.paths, self, &start, samplers, values);
         }
         for (u, value) in samplers.iter_mut().zip(values) {
             *value = Integrand::evaluate(self, u);

@@ -29,6 +29,7 @@ pub(super) struct Walk<'a, U, const PLAIN: bool> {
     pub(super) paths: Paths,
     pub(super) single: &'a dyn Single<U>,
     pub(super) sky: Option<&'a Sky>,
+    pub(super) start: &'a dyn Fn(usize, &mut U) -> Start,
     pub(super) points: &'a mut [U],
     pub(super) values: &'a mut [Vec3],
 }
@@ -101,7 +102,7 @@ impl<U: Sampler, const PLAIN: bool> WithSimd for Walk<'_, U, PLAIN> {
                     running -= 1;
                 }
                 if begun < self.points.len() {
-                    let start = self.single.start(&mut self.points[begun]);
+                    let start = (self.start)(begun, &mut self.points[begun]);
                     state.begin(lane, begun, start);
                     begun += 1;
                     running += 1;

@@ -1,0 +1,231 @@
+//! The means of several pixels at once.
+
+use super::View;
+use super::bsdf::Bsdf;
+use super::filter::Filter;
+use super::light::{Environment, Light};
+use super::sensor::Sensor;
+use crate::points::PointSet;
+use crate::{Average, Estimator, NonFinite, Outcome};
+use glam::Vec3;
+#[cfg(feature = "simd")]
+use {
+    super::packet::Packet,
+    crate::block::Block,
+    crate::estimators::whole,
+    crate::evaluate::BLOCK,
+    crate::tallied::Tallied,
+    crate::tally::Tally,
+    crate::{Cursor, Estimate, Integrand, Value},
+    glam::DVec3,
+};
+
+/// A pixel, and the points that its mean is to be over.
+#[derive(Clone, Copy, Debug)]
+pub struct Share<P> {
+    /// The column and the row, from the upper left corner of the picture.
+    pub position: [u32; 2],
+    /// The points, of which a finite set is taken whole.
+    pub points: P,
+    /// How many of them, from the first one on.
+    pub count: u64,
+}
+
+impl<P: PointSet> Share<P> {
+    fn average(&self, rule: NonFinite) -> Average<&P> {
+        Average::new(&self.points, self.count).non_finite(rule)
+    }
+}
+
+impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F> {
+    /// The mean of each of some pixels of a picture of `size`: what [`Average`] gives for the [`pixel`](Self::pixel) alone, to the bit,
+    /// but for the time.
+    ///
+    /// Where many paths are followed at once, those of the next pixel begin where those of one run out, which is several times as
+    /// fast for a few points a pixel, and somewhat faster for some hundreds. A few thousand points in all are enough for that.
+    ///
+    /// ```
+    /// use estimand::path::{Share, scenes};
+    /// use estimand::points::{Rescrambled, pixel};
+    /// use estimand::{Average, Estimator, NonFinite};
+    ///
+    /// let (view, size) = (scenes::cornell_box(), [16, 16]);
+    /// let row: Vec<_> = (0..16)
+    ///     .map(|x| {
+    ///         let points = Rescrambled::new(4, pixel::seed([x, 9], 1))?;
+    ///         Ok(Share { position: [x, 9], points, count: 4 })
+    ///     })
+    ///     .collect::<Result<_, estimand::Error>>()?;
+    /// let means = view.averages(size, &row, NonFinite::Fail);
+    /// let alone = Average::new(row[3].points, 4).estimate(&view.pixel([3, 9], size))?;
+    /// assert_eq!(means[3].as_ref().unwrap().mean, alone.mean);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Each pixel has its own: that of [`Average`].
+    pub fn averages<P: PointSet>(
+        &self,
+        size: [u32; 2],
+        shares: &[Share<P>],
+        rule: NonFinite,
+    ) -> Vec<Outcome<Vec3>> {
+        #[cfg(feature = "simd")]
+        if let Some(packet) = self.pixel([0; 2], size).packet() {
+            return self.together(packet, size, shares, rule);
+        }
+        let alone = |share: &Share<P>| self.alone(size, share, rule);
+        shares.iter().map(alone).collect()
+    }
+
+    fn alone<P: PointSet>(
+        &self,
+        size: [u32; 2],
+        share: &Share<P>,
+        rule: NonFinite,
+    ) -> Outcome<Vec3> {
+        share
+            .average(rule)
+            .estimate(&self.pixel(share.position, size))
+    }
+}
+
+/// From how many points on those at hand are followed: enough for few lanes to be idle when they run out, few enough for their
+/// coordinates to stay in a cache.
+#[cfg(feature = "simd")]
+const TOGETHER: usize = 512;
+
+#[cfg(feature = "simd")]
+impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F> {
+    /// [`averages`](Self::averages) in lanes.
+    fn together<P: PointSet>(
+        &self,
+        packet: &Packet,
+        size: [u32; 2],
+        mut shares: &[Share<P>],
+        rule: NonFinite,
+    ) -> Vec<Outcome<Vec3>> {
+        let mut outcomes = Vec::with_capacity(shares.len());
+        let (mut ahead, mut values) = (Vec::new(), Vec::new());
+        while !shares.is_empty() {
+            let mut points = 0;
+            let mut more = |share: &Share<P>| {
+                let enough = points >= TOGETHER;
+                points += few(share);
+                !enough
+            };
+            let end = shares.iter().take_while(|share| more(share)).count();
+            let (batch, rest) = shares.split_at(end);
+            self.follow(packet, size, batch, &mut ahead, &mut values);
+            let mut given = &values[..];
+            outcomes.extend(batch.iter().map(|share| {
+                let (own, others) = given.split_at(few(share));
+                given = others;
+                // What plain arithmetic does not do is left to the estimator.
+                share.of_values(own, rule).map_or_else(|| self.alone(size, share, rule), Ok)
+            }));
+            shares = rest;
+        }
+        outcomes
+    }
+
+    /// The values at the points of all shares that have few. `ahead` is room for coordinates.
+    fn follow<P: PointSet>(
+        &self,
+        packet: &Packet,
+        size: [u32; 2],
+        shares: &[Share<P>],
+        ahead: &mut Vec<f64>,
+        values: &mut Vec<Vec3>,
+    ) {
+        // Any pixel will do for all that is asked but where paths begin.
+        let any = self.pixel([0; 2], size);
+        let width = |share: &Share<P>| any.dimensions().min(share.points.dimensions());
+        ahead.clear();
+        for share in shares {
+            let (from, width) = (ahead.len(), width(share));
+            ahead.resize(from + few(share) * width as usize, 0.0);
+            share.points.fill(0, 0..width, &mut ahead[from..]);
+        }
+        let (mut samplers, mut pixels) = (Vec::new(), Vec::new());
+        let mut rows = &ahead[..];
+        for share in shares {
+            for index in 0..few(share) {
+                let (row, others) = rows.split_at(width(share) as usize);
+                rows = others;
+                samplers.push(Cursor::with_prefix(&share.points, index as u64, row));
+                pixels.push(share.position);
+            }
+        }
+        values.clear();
+        values.resize(samplers.len(), Vec3::ZERO);
+        let start = |point: usize, u: &mut _| self.pixel(pixels[point], size).start(u);
+        packet.radiance(self.paths, &any, &start, &mut samplers, values);
+    }
+}
+
+#[cfg(feature = "simd")]
+impl<P: PointSet> Share<P> {
+    /// The estimate from the values at its points; `None` without any, and if plain arithmetic does not do.
+    fn of_values(&self, values: &[Vec3], rule: NonFinite) -> Option<Estimate<DVec3>> {
+        let mut block = Block::EMPTY;
+        block.extend(values, Value::widen);
+        let mut tally = Tally::EMPTY;
+        tally.close(block.piece()?);
+        self.average(rule).summary(&[tally])
+    }
+}
+
+/// How many points the share has, if they are to be followed with those of others; 0 if not.
+#[cfg(feature = "simd")]
+fn few<P: PointSet>(share: &Share<P>) -> usize {
+    let count = whole(&share.points, share.count);
+    usize::try_from(count).ok().filter(|_| count <= BLOCK).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::scenes;
+    use crate::points::{Hammersley, Independent, Rescrambled, pixel};
+
+    /// Numbers of points that end within and at batches, that are none, and that are more than are followed together.
+    const COUNTS: [u64; 9] = [1, 3, 512, 0, 17, 1500, 1024, 2, 600];
+
+    #[test]
+    fn each_pixel_is_as_it_is_alone() {
+        let size = [9, 5];
+        let view = scenes::cornell_box();
+        let shares = |points: fn(u64, u64) -> Box<dyn PointSet>| -> Vec<Share<_>> {
+            (0..27)
+                .map(|place| {
+                    let position = [place % 9, place / 9];
+                    let count = COUNTS[(place as usize * 7) % 9];
+                    let points = points(pixel::seed(position, 3), count);
+                    Share { position, points, count }
+                })
+                .collect()
+        };
+        let rescrambled = |seed, _| Box::new(Rescrambled::new(4, seed).unwrap()) as Box<dyn PointSet>;
+        let independent = |seed, _| Box::new(Independent::new(seed)) as Box<dyn PointSet>;
+        // In fewer dimensions than paths read, and of a size of its own.
+        let finite = |_, count: u64| {
+            Box::new(Hammersley::new(count.max(1), 5).unwrap()) as Box<dyn PointSet>
+        };
+        for points in [rescrambled, independent, finite] {
+            let shares = shares(points);
+            let together = view.averages(size, &shares, NonFinite::Fail);
+            assert_eq!(together.len(), shares.len());
+            for (share, mut outcome) in shares.iter().zip(together) {
+                let mut alone = view.alone(size, share, NonFinite::Fail);
+                assert_eq!(alone.is_err(), share.count == 0);
+                for outcome in [&mut outcome, &mut alone].into_iter().flatten() {
+                    outcome.seconds = 0.0;
+                }
+                assert_eq!(outcome, alone, "{share:?}");
+            }
+        }
+        assert!(view.averages(size, &[] as &[Share<Independent>], NonFinite::Fail).is_empty());
+    }
+}

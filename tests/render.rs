@@ -152,7 +152,7 @@ fn recursion() {
 #[test]
 fn adaptive_samples() {
     let view = scenes::cornell_box();
-    let adaptive = Adaptive::new(12, 4).unwrap();
+    let adaptive = Adaptive::new(12, 2).unwrap();
     let ours = Batches::new(32, 12, |batch| {
         let plain = |key, count| MonteCarlo::new(count, key);
         let adapted = view.render_adaptive([128; 2], hash(14, batch), adaptive, plain);
@@ -168,7 +168,8 @@ fn adaptive_samples() {
 fn adaptive_nets() {
     let (view, size) = (scenes::cornell_box(), [128; 2]);
     let ours = Batches::new(32, 12, |batch| {
-        let pilot = view.allocate(size, hash(20, batch), 4).unwrap();
+        let points = |key| Rescrambled::new(4, key);
+        let pilot = view.allocate(size, hash(20, batch), 2, points).unwrap();
         let counts = pilot.powers(8, 2);
         Image::of_pixels(size, hash(21, batch), |[x, y], key| {
             let count = counts[(y * size[0] + x) as usize];

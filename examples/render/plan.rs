@@ -10,7 +10,7 @@ use crate::points::Points;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Plan {
     passes: Passes,
-    /// Samples of a pixel that decide beforehand how the others are dealt to the pixels; 0 if they are not.
+    /// Points in each of the two sets of one pixel of nine that decide beforehand how all samples are dealt to the pixels; 0 if there are none.
     pub(crate) pilot: u64,
 }
 
@@ -27,8 +27,9 @@ enum Passes {
 /// The most samples of a pass where their number is not known beforehand.
 const MOST: u64 = 64;
 
-/// Samples of a pixel in a pilot where their number is not known beforehand.
-const PILOT: u64 = 8;
+/// Points of a set of the pilot where the number of samples is not known beforehand, and the most where it is.
+const PILOT: u64 = 16;
+const MOST_OF_PILOT: u64 = 64;
 
 /// The fewest passes that tell of an error.
 const FEWEST: u64 = 4;
@@ -53,13 +54,12 @@ impl Plan {
             });
         }
         let spp = arguments.spp.unwrap_or(of_the_file);
-        let pilot = adaptive((spp / 8).clamp(2, 2 * PILOT));
-        if spp <= pilot {
-            return Err(format!(
-                "--adaptive needs more than {pilot} samples a pixel, not {spp}"
-            ));
+        // A power of two for nets. Two sets in one pixel of nine: less than a thirtieth of all samples.
+        let pilot = adaptive(1 << (spp / 8).clamp(1, MOST_OF_PILOT).ilog2());
+        let spp = spp - (2 * pilot).div_ceil(9);
+        if spp == 0 {
+            return Err("--adaptive needs at least 2 samples a pixel".to_owned());
         }
-        let spp = spp - pilot;
         let replicates = arguments.replicates.unwrap_or(match arguments.std_error {
             Some(_) => 16,
             None => 2,

@@ -58,9 +58,16 @@ impl Points {
         seed: u64,
         count: u64,
     ) -> Result<Box<dyn PointSet>, Error> {
-        let key = pixel::seed(position, seed);
+        match self {
+            Self::BlueNoise => Ok(Box::new(BlueNoise::new(count, seed)?.pixel(position))),
+            others => others.of_key(pixel::seed(position, seed), count),
+        }
+    }
+
+    /// About `count` points that `key` selects, blue noise at the corner of its picture.
+    pub(crate) fn of_key(self, key: u64, count: u64) -> Result<Box<dyn PointSet>, Error> {
         Ok(match self {
-            Self::BlueNoise => Box::new(BlueNoise::new(count, seed)?.pixel(position)),
+            Self::BlueNoise => Box::new(BlueNoise::new(count, key)?.pixel([0, 0])),
             Self::Sobol => Box::new(Sobol::new(DIMENSIONS)?.scrambled(HashedOwen { seed: key })),
             Self::Rescrambled => Box::new(Rescrambled::new(4, key)?),
             Self::Halton => Box::new(Halton::new(DIMENSIONS)?.scrambled(Owen { seed: key })),

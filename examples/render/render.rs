@@ -117,12 +117,13 @@ impl Job<'_> {
         }
         let start = Instant::now();
         let seed = hash::hash(self.seed, DEALING);
-        let proceed = |_| !self.stop.load(Ordering::Relaxed) && self.plan.has_time(start.elapsed());
+        let points = |key| self.points.of_key(key, count);
+        let proceed = || !self.stop.load(Ordering::Relaxed) && self.plan.has_time(start.elapsed());
         let allocation = (self.picture)
-            .allocate_while(self.size, seed, count, &proceed)
+            .allocate_while(self.size, seed, count, &points, &proceed)
             .map_err(|e| e.to_string())?;
         let done = allocation.is_some();
-        lock(state).look(allocation, count, start.elapsed());
+        lock(state).look(allocation, start.elapsed());
         match done || self.stop.load(Ordering::Relaxed) {
             true => Ok(done),
             false => Err("the time is too short for the pilot of --adaptive".to_owned()),

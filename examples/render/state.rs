@@ -59,11 +59,9 @@ impl State {
         }
     }
 
-    /// Keeps what a pilot of so many samples a pixel says, if it was not stopped.
-    pub(crate) fn look(&mut self, says: Option<Allocation>, samples: u64, took: Duration) {
-        if says.is_some() {
-            self.paths += samples * self.mean.len() as u64;
-        }
+    /// Keeps what a pilot says, if it was not stopped.
+    pub(crate) fn look(&mut self, says: Option<Allocation>, took: Duration) {
+        self.paths += says.as_ref().map_or(0, Allocation::used);
         self.allocation = says;
         self.pilot_seconds += took.as_secs_f64();
     }

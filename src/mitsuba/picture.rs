@@ -14,6 +14,9 @@ use crate::path::{Allocation, Share, Unfinished, View};
 use crate::points::PointSet;
 use crate::{Average, Error, Estimate, Estimator, Incomplete, NonFinite, Sampler};
 
+/// What makes the points of a pixel from its seed.
+pub type PointsOfPixel<'a> = dyn Fn(u64) -> Result<Box<dyn PointSet>, Error> + Sync + 'a;
+
 /// A [`View`] of any types, behind a pointer.
 pub trait Picture: Sync + fmt::Debug {
     /// The mean radiance of a pixel over the first `count` of some points, or over all of a finite set. Values that are not
@@ -51,7 +54,8 @@ pub trait Picture: Sync + fmt::Debug {
         size: [u32; 2],
         seed: u64,
         count: u64,
-        proceed: &(dyn Fn(u32) -> bool + Sync),
+        points: &PointsOfPixel<'_>,
+        proceed: &(dyn Fn() -> bool + Sync),
     ) -> Result<Option<Allocation>, Unfinished>;
 
     /// Ends paths by Russian roulette as it pays in this picture: see [`View::learn_roulette`].
@@ -104,9 +108,10 @@ where
         size: [u32; 2],
         seed: u64,
         count: u64,
-        proceed: &(dyn Fn(u32) -> bool + Sync),
+        points: &PointsOfPixel<'_>,
+        proceed: &(dyn Fn() -> bool + Sync),
     ) -> Result<Option<Allocation>, Unfinished> {
-        self.allocate_while(size, seed, count, proceed)
+        self.allocate_while(size, seed, count, points, proceed)
     }
 
     fn learn_roulette(&mut self, size: [u32; 2], count: u64, seed: u64) -> Result<(), Error> {

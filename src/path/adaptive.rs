@@ -1,10 +1,7 @@
 //! More samples where the picture needs them, without bias.
 
 mod allocation;
-
-use core::sync::atomic::{AtomicBool, Ordering};
-
-use glam::DVec3;
+mod pilot;
 
 pub use allocation::Allocation;
 
@@ -13,7 +10,10 @@ use super::filter::Filter;
 use super::light::{Environment, Light};
 use super::sensor::Sensor;
 use super::{Image, Unfinished, View};
-use crate::{Error, Estimate, Estimator, Incomplete, MonteCarlo, NonFinite, hash};
+use crate::points::{Independent, PointSet};
+use crate::{Error, Estimator, hash};
+
+use pilot::{Pilot, SIDE};
 
 /// How many samples an adaptive picture takes, and how many of them look first.
 ///
@@ -29,7 +29,7 @@ use crate::{Error, Estimate, Estimator, Incomplete, MonteCarlo, NonFinite, hash}
 /// let adaptive = Adaptive::new(64, 8)?;
 /// let adapted = view.render_adaptive([16, 16], 1, adaptive, |key, count| MonteCarlo::new(count, key))?;
 /// let samples: u64 = adapted.samples.iter().sum();
-/// assert_eq!(samples, 16 * 16 * (64 - 8));
+/// assert_eq!(samples, 16 * 16 * (64 - 2));
 /// assert!(adapted.image.std_error().is_some());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -40,6 +40,7 @@ use crate::{Error, Estimate, Estimator, Incomplete, MonteCarlo, NonFinite, hash}
 pub struct Adaptive {
     /// The mean over the pixels, those of the pilot included.
     count: u64,
+    /// In each of two sets, in one pixel of each square.
     pilot: u64,
 }
 
@@ -54,16 +55,17 @@ pub struct Adapted {
 }
 
 impl Adaptive {
-    /// `count` samples a pixel in the mean over the picture, `pilot` of them in every pixel to decide.
+    /// `count` samples a pixel in the mean over the picture, of which twice `pilot` in one pixel of nine decide how the others are
+    /// dealt.
     ///
     /// # Errors
     ///
-    /// [`Error::Refused`] for a pilot below 2, which has no variance to tell of, or one that leaves nothing of `count`.
+    /// [`Error::Refused`] for a pilot of 0, or one that leaves nothing of `count`.
     pub fn new(count: u64, pilot: u64) -> Result<Self, Error> {
-        if !(2..count).contains(&pilot) {
+        if pilot == 0 || of_pilot(pilot) >= count {
             return Err(Error::refused(
                 "number of pilot samples",
-                "from 2 to below the count",
+                "at least 1, and two ninths of it below the count",
                 format_args!("{pilot} of {count}"),
             ));
         }
@@ -72,8 +74,9 @@ impl Adaptive {
 }
 
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F> {
-    /// Renders a pilot of `count` independent samples a pixel, and tells how a picture is to be sampled that takes other ones: those of
-    /// other seeds. Values that are not finite are left out of the pilot.
+    /// Renders a pilot, and tells how a picture is to be sampled that takes other samples: those of other seeds. In one pixel of
+    /// every square of three by three it compares two sets of `count` points each, which `points` makes of seeds: let them be
+    /// of the kind that the picture will have. Values that are not finite are left out.
     ///
     /// ```
     /// use estimand::path::{Image, scenes};
@@ -81,11 +84,11 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     /// use estimand::{Average, Estimator};
     ///
     /// let (view, size) = (scenes::cornell_box(), [16, 16]);
-    /// let counts = view.allocate(size, 1, 8)?.powers(32, 2);
+    /// let points = |key| Rescrambled::new(4, key);
+    /// let counts = view.allocate(size, 1, 8, points)?.powers(32, 2);
     /// let picture = Image::of_pixels(size, 2, |[x, y], key| {
-    ///     let points = Rescrambled::new(4, key)?;
     ///     let count = counts[(y * size[0] + x) as usize];
-    ///     Average::new(points, count).estimate(&view.pixel([x, y], size))
+    ///     Average::new(points(key)?, count).estimate(&view.pixel([x, y], size))
     /// })?;
     /// assert_eq!(picture.used(), counts.iter().sum::<u64>());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -93,59 +96,37 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     ///
     /// # Errors
     ///
-    /// As [`render`](Self::render), and [`Error::Refused`] for a count below 2.
-    pub fn allocate(
+    /// As [`render`](Self::render), and [`Error::Refused`] for a count of 0.
+    pub fn allocate<P: PointSet>(
         &self,
         size: [u32; 2],
         seed: u64,
         count: u64,
+        points: impl Fn(u64) -> Result<P, Error> + Sync,
     ) -> Result<Allocation, Unfinished> {
-        let allocation = self.allocate_while(size, seed, count, |_| true)?;
-        Ok(allocation.expect("every row was to be rendered"))
+        let allocation = self.allocate_while(size, seed, count, points, || true)?;
+        Ok(allocation.expect("nobody stopped it"))
     }
 
-    /// The same, row by row: `proceed` is called with the number of a row, from any thread, before the row is rendered. `None` if it
-    /// returns `false` for any.
+    /// The same, as long as `proceed`, which is called from any thread, every three rows, returns `true`; then `None`.
     ///
     /// # Errors
     ///
     /// As [`allocate`](Self::allocate).
-    pub fn allocate_while(
+    pub fn allocate_while<P: PointSet>(
         &self,
         size: [u32; 2],
         seed: u64,
         count: u64,
-        proceed: impl Fn(u32) -> bool + Sync,
+        points: impl Fn(u64) -> Result<P, Error> + Sync,
+        proceed: impl Fn() -> bool + Sync,
     ) -> Result<Option<Allocation>, Unfinished> {
-        if count < 2 {
-            return Err(Error::refused("number of pilot samples", "at least 2", count).into());
-        }
-        let estimate = |position, key| {
-            let pilot = MonteCarlo::new(count, key).non_finite(NonFinite::Reject);
-            let (mean, std_error) = match pilot.estimate(&self.pixel(position, size)) {
-                Ok(estimate) => (estimate.mean, estimate.std_error),
-                Err(Incomplete {
-                    reason: Error::NothingLeft { .. },
-                    ..
-                }) => (DVec3::ZERO, None),
-                Err(other) => return Err(other),
-            };
-            let mut estimate = Estimate::new(mean, count);
-            // Of fewer than two values the pixels around tell.
-            estimate.std_error = Some(std_error.unwrap_or(DVec3::ZERO));
-            Ok(estimate)
-        };
-        let stopped = AtomicBool::new(false);
-        let pilot = Image::of_pixels_while(size, seed, &estimate, &|row| {
-            let proceeds = proceed(row);
-            stopped.fetch_or(!proceeds, Ordering::Relaxed);
-            proceeds
-        })?;
-        Ok((!stopped.into_inner()).then(|| Allocation::new(deviations(&pilot))))
+        let pilot = Pilot::new(self, size, seed, count, &points, &proceed)?;
+        Ok(pilot.map(|pilot| Allocation::new(pilot.deviations(), pilot.used)))
     }
 
     /// The picture with more samples where it varies more: `estimator` makes the estimator of a pixel from its seed and the
-    /// number of its samples, which are [`Allocation::counts`]. For nets take [`allocate`](Self::allocate) and [`Allocation::powers`]. See
+    /// number of its samples, which are [`Allocation::counts`]. The pilot is of independent points. For nets take [`allocate`](Self::allocate) and [`Allocation::powers`]. See
     /// [`Adaptive`].
     ///
     /// # Errors
@@ -159,8 +140,9 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         estimator: impl Fn(u64, u64) -> T + Sync,
     ) -> Result<Adapted, Unfinished> {
         let Adaptive { count, pilot } = adaptive;
-        let allocation = self.allocate(size, hash::hash(seed, PILOT), pilot)?;
-        let samples = allocation.counts(count - pilot);
+        let points = |key| Ok(Independent::new(key));
+        let allocation = self.allocate(size, hash::hash(seed, PILOT), pilot, points)?;
+        let samples = allocation.counts(count - of_pilot(pilot));
         let image = Image::of_pixels(size, seed, |[x, y], key| {
             let count = samples[y as usize * size[0] as usize + x as usize];
             estimator(key, count).estimate(&self.pixel([x, y], size))
@@ -169,27 +151,14 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     }
 }
 
+/// Samples of a pixel in the mean that are those of a pilot, rounded up.
+fn of_pilot(pilot: u64) -> u64 {
+    let looked_at = u64::from(SIDE * SIDE);
+    pilot / looked_at * 2 + (pilot % looked_at * 2).div_ceil(looked_at)
+}
+
 /// Tells the seed of the pilot from that of the picture.
 const PILOT: u64 = 0x0070_696c_6f74;
-
-/// Deviations in proportion to those that a pilot shows: root mean squares over the 3 by 3 pixels around, since few samples may
-/// have missed what is rare.
-fn deviations(pilot: &Image) -> Vec<f64> {
-    let errors = pilot.std_error().expect("every pixel has one");
-    let (width, height) = (errors.width(), errors.height());
-    let variance: Vec<f64> = errors.pixels().iter().map(|e| e.length_squared()).collect();
-    let around = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
-    (0..variance.len())
-        .map(|place| {
-            let (columns, rows) = (around(place % width, width), around(place / width, height));
-            let pixels = (rows.len() * columns.len()) as f64;
-            let squares: f64 = rows
-                .flat_map(|y| variance[y * width..][columns.clone()].iter())
-                .sum();
-            (squares / pixels).sqrt()
-        })
-        .collect()
-}
 
 #[cfg(test)]
 mod tests {
@@ -203,15 +172,21 @@ mod tests {
         let adaptive = Adaptive::new(32, 8).unwrap();
         let plain = |key, count| MonteCarlo::new(count, key);
         let adapted = view.render_adaptive([32, 32], 1, adaptive, plain).unwrap();
-        assert_eq!(adapted.samples.iter().sum::<u64>(), 32 * 32 * 24);
-        assert_eq!(adapted.image.used(), 32 * 32 * 24);
+        // Two ninths of eight, rounded up, are two.
+        assert_eq!(adapted.samples.iter().sum::<u64>(), 32 * 32 * 30);
+        assert_eq!(adapted.image.used(), 32 * 32 * 30);
         assert!(adapted.samples.iter().all(|&count| count >= 3));
         assert!(adapted.samples.iter().any(|&count| count > 64));
-        assert!(Adaptive::new(8, 1).is_err() && Adaptive::new(8, 8).is_err());
-        assert!(view.allocate([4, 4], 1, 1).is_err());
-        assert!(view.allocate([0, 4], 1, 2).is_err());
-        let halted = view.allocate_while([4, 4], 1, 2, |row| row != 2);
+        assert!(Adaptive::new(8, 0).is_err() && Adaptive::new(2, 9).is_err());
+        assert!(Adaptive::new(3, 9).is_ok() && Adaptive::new(2, 4).is_ok());
+        assert!(Adaptive::new(u64::MAX, u64::MAX).is_ok());
+        let points = |key| Ok(Independent::new(key));
+        assert!(view.allocate([4, 4], 1, 0, points).is_err());
+        assert!(view.allocate([0, 4], 1, 2, points).is_err());
+        let halted = view.allocate_while([4, 4], 1, 2, points, || false);
         assert_eq!(halted.unwrap(), None);
+        let refused = |_| Err::<Independent, _>(Error::refused("points", "none", 0));
+        assert!(view.allocate([4, 4], 1, 2, refused).is_err());
     }
 
     #[test]
@@ -224,7 +199,10 @@ mod tests {
         let alone = alone.estimate(&view.pixel([1, 1], [4, 4])).unwrap();
         assert_eq!(alone.mean, adapted.image.pixels()[5]);
         // The pilot has others.
-        let counts = |seed| view.allocate([4, 4], seed, 16).unwrap().counts(48);
+        let counts = |seed| {
+            let points = |key| Ok(Independent::new(key));
+            view.allocate([4, 4], seed, 16, points).unwrap().counts(60)
+        };
         assert_eq!(adapted.samples, counts(hash::hash(3, PILOT)));
         assert_ne!(adapted.samples, counts(3));
     }

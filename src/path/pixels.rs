@@ -142,18 +142,21 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         // Any pixel will do for all that is asked but where paths begin.
         let any = self.pixel([0; 2], size);
         let width = |share: &Share<P>| any.dimensions().min(share.points.dimensions());
-        ahead.clear();
+        let rows = |share: &Share<P>| few(share) * width(share) as usize;
+        // What was there before is written over.
+        ahead.resize(shares.iter().map(rows).sum::<usize>().max(ahead.len()), 0.0);
+        let mut free = &mut ahead[..];
         for share in shares {
-            let (from, width) = (ahead.len(), width(share));
-            ahead.resize(from + few(share) * width as usize, 0.0);
-            share.points.fill(0, 0..width, &mut ahead[from..]);
+            let (own, others) = free.split_at_mut(rows(share));
+            share.points.fill(0, 0..width(share), own);
+            free = others;
         }
         let (mut samplers, mut pixels) = (Vec::new(), Vec::new());
-        let mut rows = &ahead[..];
+        let mut left = &ahead[..];
         for share in shares {
             for index in 0..few(share) {
-                let (row, others) = rows.split_at(width(share) as usize);
-                rows = others;
+                let (row, others) = left.split_at(width(share) as usize);
+                left = others;
                 samplers.push(Cursor::with_prefix(&share.points, index as u64, row));
                 pixels.push(share.position);
             }

@@ -23,7 +23,7 @@
 //! # Adaptors
 //!
 //! [`Shifted`] randomises any set, [`Folded`] makes integrands periodic, [`Padded`] takes the first dimensions from one set
-//! and the rest from another. The digits of nets are randomised by a scramble that is part of the set's type; one that
+//! and the rest from another, [`Skipped`] goes on where an estimate ended. The digits of nets are randomised by a scramble that is part of the set's type; one that
 //! is not made for a set does not compile:
 //!
 //! | randomisation | for | what it is |
@@ -78,6 +78,7 @@ mod radical_inverse;
 mod rescrambled;
 mod scramble;
 mod shifted;
+mod skipped;
 mod sobol;
 mod strata;
 mod stratified;
@@ -103,6 +104,7 @@ pub use scramble::{
     LinearMatrix, Owen, Plain,
 };
 pub use shifted::Shifted;
+pub use skipped::Skipped;
 pub use sobol::{DIMENSIONS as SOBOL_DIMENSIONS, Sobol};
 pub use stratified::Stratified;
 pub use van_der_corput::VanDerCorput;

@@ -7,7 +7,7 @@ use std::collections::HashSet;
 use estimand::points::{
     BlueNoise, DigitPermutation, DigitalShift, Faure, Folded, Halton, Hammersley, HashedOwen,
     Independent, Kronecker, Lattice, LatticeSequence, LinearMatrix, MultiJittered, NRooks,
-    OrthogonalArray, Owen, Padded, PointSet, Rescrambled, Shifted, Sobol, Stratified, VanDerCorput,
+    OrthogonalArray, Owen, Padded, PointSet, Rescrambled, Shifted, Skipped, Sobol, Stratified, VanDerCorput,
 };
 
 /// Indices where integers of some width end, and their neighbours.
@@ -251,6 +251,8 @@ laws_of_random_sets! {
     kronecker_shifted: |seed| Shifted::new(Kronecker::r(3).unwrap(), seed);
     rescrambled_2: |seed| Rescrambled::new(2, seed).unwrap();
     rescrambled_4: |seed| Rescrambled::new(4, seed).unwrap();
+    skipped: |seed| Skipped::new(Rescrambled::new(4, seed).unwrap(), 24);
+    skipped_past_the_last_index: |seed| Skipped::new(Halton::new(5).unwrap().scrambled(Owen { seed }), u64::MAX - 20);
     padded: |seed| Padded::new(
         Sobol::new(4).unwrap().scrambled(HashedOwen { seed }), 4, NRooks::new(64, !seed).unwrap()).unwrap();
     blue_noise: |seed| BlueNoise::new(16, seed).unwrap().pixel([3, 4]);

@@ -48,8 +48,8 @@ struct Arguments {
     /// The points of the pixels; blue-noise is the default, and rescrambled with --adaptive
     #[arg(long, value_enum, value_name = "SET")]
     points: Option<Points>,
-    /// Into how many independent renders the samples of --spp are split; their spread gives the error.
-    /// The default is 2, and 16 with --std-error
+    /// Into how many independent renders the samples of --spp are split; their spread gives the error. The default is 16 with --std-error,
+    /// and 2 for points that cannot be parted. Otherwise the two halves of one set tell of the noise, rather more than there is
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     replicates: Option<u64>,
     /// Selects the randomisation of the points
@@ -67,8 +67,8 @@ struct Arguments {
     /// A picture to compare with
     #[arg(long, value_name = "FILE.exr")]
     reference: Option<PathBuf>,
-    /// Takes more samples where the picture varies more, as a pilot of independent ones shows; of --spp, an eighth goes to the pilot, from 2
-    /// to 16, which is no part of the picture. With --time and --noise it is 8
+    /// Takes more samples where the picture varies more, as a pilot shows: two sets of an eighth of --spp, or of 16 with --time and --noise, in
+    /// one pixel of nine, which are no part of the picture
     #[arg(long)]
     adaptive: bool,
     /// Ends paths by Russian roulette as a pilot of so many paths a pixel, in at most 128 x 128 pixels and twice over, shows that it pays

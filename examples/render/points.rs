@@ -51,6 +51,23 @@ impl Points {
         self == Self::BlueNoise
     }
 
+    /// Whether they are a sequence that any number of points can be taken of, some now and some later.
+    pub(crate) fn go_on(self) -> bool {
+        match self {
+            Self::Sobol | Self::Rescrambled | Self::Halton | Self::Independent => true,
+            Self::BlueNoise
+            | Self::Hammersley
+            | Self::MultiJittered
+            | Self::Stratified
+            | Self::NRooks => false,
+        }
+    }
+
+    /// Whether the halves of a set are as good as sets of that size: sequences, and blue noise.
+    pub(crate) fn come_in_parts(self) -> bool {
+        self.go_on() || self == Self::BlueNoise
+    }
+
     /// About `count` points for the pixel at `position` of an image that `seed` selects.
     pub(crate) fn of_pixel(
         self,

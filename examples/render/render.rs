@@ -7,11 +7,11 @@ use std::time::{Duration, Instant};
 
 use estimand::mitsuba::Picture;
 use estimand::path::Share;
-use estimand::points::PointSet;
+use estimand::points::{PointSet, Skipped};
 use estimand::{each, hash};
 
 use crate::checkpoint::Checkpoint;
-use crate::plan::Plan;
+use crate::plan::{Pass, Plan};
 use crate::points::Points;
 use crate::progress::Progress;
 use crate::state::{Row, State};
@@ -73,28 +73,23 @@ impl Job<'_> {
     fn passes(&self, state: &Mutex<State>) -> Result<(), String> {
         let before = lock(state).seconds;
         let start = Instant::now();
-        // How a pass of so many samples is dealt.
+        // How the points of sets of so many are dealt.
         let mut dealt: Option<(u64, Counts)> = None;
         while !self.stop.load(Ordering::Relaxed) {
-            let (pass, samples) = {
-                let state = lock(state);
-                let Some(samples) = self.next(&state) else {
-                    return Ok(());
-                };
-                (state.passes, samples)
+            let Some(pass) = self.next(&lock(state)) else {
+                return Ok(());
             };
             let done = self.look(state)?;
             lock(state).seconds = before + start.elapsed().as_secs_f64();
             if !done {
                 break;
             }
-            let seed = hash::hash(self.seed, pass);
             let counts = match dealt {
-                Some((mean, counts)) if mean == samples => counts,
-                _ => self.counts(state, samples)?,
+                Some((points, counts)) if points == pass.points => counts,
+                _ => self.counts(state, pass.points)?,
             };
-            let rows = each(self.size[1].into(), |y| self.row(y, seed, &counts, state));
-            dealt = Some((samples, counts));
+            let rows = each(self.size[1].into(), |y| self.row(y, &pass, &counts, state));
+            dealt = Some((pass.points, counts));
             lock(state).seconds = before + start.elapsed().as_secs_f64();
             if rows
                 .into_iter()
@@ -102,7 +97,7 @@ impl Job<'_> {
                 .into_iter()
                 .all(|done| done)
             {
-                lock(state).complete(samples);
+                lock(state).complete(pass.samples());
             }
         }
         Ok(())
@@ -130,7 +125,7 @@ impl Job<'_> {
         }
     }
 
-    /// How many samples each pixel gets in a pass that has so many in the mean.
+    /// How many points the set of each pixel has, if it is so many in the mean.
     fn counts(&self, state: &Mutex<State>, samples: u64) -> Result<Counts, String> {
         let some = self.points.of_pixel([0, 0], self.seed, samples);
         let radix = some.map_err(|e| e.to_string())?.radix();
@@ -141,8 +136,8 @@ impl Job<'_> {
         })
     }
 
-    /// How many samples the next pass has.
-    fn next(&self, state: &State) -> Option<u64> {
+    /// The next pass.
+    fn next(&self, state: &State) -> Option<Pass> {
         let rendering = state.seconds - state.pilot_seconds;
         self.plan.next(
             state.passes,
@@ -156,7 +151,7 @@ impl Job<'_> {
     fn row(
         &self,
         y: u64,
-        seed: u64,
+        pass: &Pass,
         counts: &Counts,
         state: &Mutex<State>,
     ) -> Result<bool, String> {
@@ -165,6 +160,7 @@ impl Job<'_> {
             return Ok(true);
         }
         let y = u32::try_from(y).map_err(|e| e.to_string())?;
+        let seed = hash::hash(self.seed, pass.set);
         let mut row = Row::default();
         let mut x = 0;
         while x < self.size[0] {
@@ -175,9 +171,15 @@ impl Job<'_> {
             let mut paths = 0;
             while x < self.size[0] && paths < TOGETHER {
                 let position = [x, y];
-                let samples = counts.of(position, self.size);
-                let points = self.points.of_pixel(position, seed, samples);
-                some.push((position, points.map_err(|e| e.to_string())?, samples));
+                let count = counts.of(position, self.size);
+                let points = self.points.of_pixel(position, seed, count);
+                let part = pass.of(count);
+                let samples = part.end - part.start;
+                let mut points = points.map_err(|e| e.to_string())?;
+                if samples < count {
+                    points = Box::new(Skipped::new(points, part.start));
+                }
+                some.push((position, points, samples));
                 paths = paths.saturating_add(samples);
                 x += 1;
             }
@@ -212,7 +214,8 @@ impl Job<'_> {
             {
                 let state = lock(state);
                 let next = self.next(&state);
-                let done = state.samples as f64 + state.part() * next.unwrap_or(0) as f64;
+                let next = next.map_or(0, |pass| pass.samples());
+                let done = state.samples as f64 + state.part() * next as f64;
                 let fraction = self.plan.fraction(done, seconds, state.noise());
                 progress.show(fraction, state.paths, seconds, state.noise());
             }

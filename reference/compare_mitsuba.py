@@ -159,8 +159,9 @@ def main() -> None:
     parser.add_argument("scenes", nargs="+", type=Path, metavar="SCENE.xml")
     parser.add_argument("-D", dest="values", type=assignment, action="append", default=[], metavar="NAME=VALUE",
                         help="gives a parameter of the scenes a value")
-    parser.add_argument("--points", default="sobol")
-    parser.add_argument("--adaptive", action="store_true", help="renders with ours dealing samples to the pixels as well")
+    parser.add_argument("--points", default="rescrambled")
+    parser.add_argument("--adaptive", action=argparse.BooleanOptionalAction, default=True,
+                        help="renders with ours dealing samples to the pixels as well (the default)")
     parser.add_argument("--spp", type=int, action="append")
     parser.add_argument("--runs", type=int, default=5)
     program = Path(__file__).parent.parent / "target/release/examples/render"

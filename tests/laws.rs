@@ -7,7 +7,8 @@ use std::collections::HashSet;
 use estimand::points::{
     BlueNoise, DigitPermutation, DigitalShift, Faure, Folded, Halton, Hammersley, HashedOwen,
     Independent, Kronecker, Lattice, LatticeSequence, LinearMatrix, MultiJittered, NRooks,
-    OrthogonalArray, Owen, Padded, PointSet, Rescrambled, Shifted, Skipped, Sobol, Stratified, VanDerCorput,
+    OrthogonalArray, Owen, Padded, PointSet, Rescrambled, Shifted, Skipped, Sobol, Stratified,
+    VanDerCorput,
 };
 
 /// Indices where integers of some width end, and their neighbours.

@@ -45,7 +45,7 @@ struct Arguments {
     /// Stops when the root-mean-square error of the pixels, as it is estimated, is below this part of the mean
     #[arg(long, value_name = "RELATIVE_ERROR", group = "length", value_parser = positive)]
     noise: Option<f64>,
-    /// The points of the pixels; blue-noise is the default, and rescrambled with --adaptive
+    /// The points of the pixels; the default is blue-noise, and rescrambled with --adaptive, --time and --noise
     #[arg(long, value_enum, value_name = "SET")]
     points: Option<Points>,
     /// Into how many independent renders the samples of --spp are split; their spread gives the error. The default is 16 with --std-error,
@@ -87,15 +87,16 @@ struct Arguments {
 }
 
 impl Arguments {
-    /// The points that are asked for.
+    /// The points that are asked for. Blue noise needs as many in every pixel, and their number beforehand.
     fn points(&self) -> Result<Points, &'static str> {
-        match (self.points, self.adaptive) {
-            (Some(Points::BlueNoise), true) => Err(
+        let unknown = self.adaptive || self.time.is_some() || self.noise.is_some();
+        match self.points {
+            Some(Points::BlueNoise) if self.adaptive => Err(
                 "blue noise has as many points in every pixel: take other --points with --adaptive",
             ),
-            (Some(points), _) => Ok(points),
-            (None, false) => Ok(Points::BlueNoise),
-            (None, true) => Ok(Points::Rescrambled),
+            Some(points) => Ok(points),
+            None if unknown => Ok(Points::Rescrambled),
+            None => Ok(Points::BlueNoise),
         }
     }
 }

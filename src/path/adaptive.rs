@@ -163,6 +163,7 @@ const PILOT: u64 = 0x0070_696c_6f74;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::MonteCarlo;
     use crate::path::scenes;
     use crate::points::pixel;
 

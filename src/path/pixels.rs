@@ -123,7 +123,9 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
                 let (own, others) = given.split_at(few(share));
                 given = others;
                 // What plain arithmetic does not do is left to the estimator.
-                share.of_values(own, rule).map_or_else(|| self.alone(size, share, rule), Ok)
+                share
+                    .of_values(own, rule)
+                    .map_or_else(|| self.alone(size, share, rule), Ok)
             }));
             shares = rest;
         }
@@ -184,7 +186,10 @@ impl<P: PointSet> Share<P> {
 #[cfg(feature = "simd")]
 fn few<P: PointSet>(share: &Share<P>) -> usize {
     let count = whole(&share.points, share.count);
-    usize::try_from(count).ok().filter(|_| count <= BLOCK).unwrap_or(0)
+    usize::try_from(count)
+        .ok()
+        .filter(|_| count <= BLOCK)
+        .unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -206,11 +211,16 @@ mod tests {
                     let position = [place % 9, place / 9];
                     let count = COUNTS[(place as usize * 7) % 9];
                     let points = points(pixel::seed(position, 3), count);
-                    Share { position, points, count }
+                    Share {
+                        position,
+                        points,
+                        count,
+                    }
                 })
                 .collect()
         };
-        let rescrambled = |seed, _| Box::new(Rescrambled::new(4, seed).unwrap()) as Box<dyn PointSet>;
+        let rescrambled =
+            |seed, _| Box::new(Rescrambled::new(4, seed).unwrap()) as Box<dyn PointSet>;
         let independent = |seed, _| Box::new(Independent::new(seed)) as Box<dyn PointSet>;
         // In fewer dimensions than paths read, and of a size of its own.
         let finite = |_, count: u64| {
@@ -226,9 +236,12 @@ mod tests {
                 for outcome in [&mut outcome, &mut alone].into_iter().flatten() {
                     outcome.seconds = 0.0;
                 }
-                assert_eq!(outcome, alone, "{share:?}");
+                assert_eq!(outcome, alone, "{:?} {}", share.position, share.count);
             }
         }
-        assert!(view.averages(size, &[] as &[Share<Independent>], NonFinite::Fail).is_empty());
+        assert!(
+            view.averages(size, &[] as &[Share<Independent>], NonFinite::Fail)
+                .is_empty()
+        );
     }
 }

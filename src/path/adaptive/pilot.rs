@@ -63,7 +63,11 @@ impl Pilot {
                 let position = within([x, y], size, seed);
                 for set in 0..2 {
                     let points = points(pixel::seed(position, hash::hash(seed, set)))?;
-                    shares.push(Share { position, points, count });
+                    shares.push(Share {
+                        position,
+                        points,
+                        count,
+                    });
                 }
             }
             let mut used = 0;
@@ -125,7 +129,11 @@ impl Pilot {
         let mut around: Vec<f64> = near.iter().map(|square| square.sqrt()).collect();
         blur(&mut near, columns, NEAR);
         blur(&mut around, columns, AROUND);
-        let squares: Vec<f64> = near.iter().zip(&around).map(|(near, around)| (near.sqrt() * around).sqrt()).collect();
+        let squares: Vec<f64> = near
+            .iter()
+            .zip(&around)
+            .map(|(near, around)| (near.sqrt() * around).sqrt())
+            .collect();
         let [width, height] = self.size.map(|pixels| pixels as usize);
         let side = SIDE as usize;
         (0..height)
@@ -185,7 +193,11 @@ mod tests {
     use crate::points::Independent;
 
     fn deviations(size: [u32; 2], squares: Vec<f64>) -> Vec<f64> {
-        let pilot = Pilot { size, used: 0, squares };
+        let pilot = Pilot {
+            size,
+            used: 0,
+            squares,
+        };
         pilot.deviations()
     }
 
@@ -202,7 +214,9 @@ mod tests {
         squares[50 * 100 + 50] = 1.0;
         let found = deviations(size, squares);
         let middle = 48_u32;
-        let heads: f64 = (1..=24).map(|k| f64::from(middle / 2 + k) / f64::from(k) / 4.0).product();
+        let heads: f64 = (1..=24)
+            .map(|k| f64::from(middle / 2 + k) / f64::from(k) / 4.0)
+            .product();
         let expected = (0.3125 * heads * heads).sqrt();
         assert!((found[151 * 300 + 150] / expected - 1.0).abs() < 1e-12);
         // Four squares off there is nothing near.

@@ -152,7 +152,7 @@ fn within(square: [u32; 2], size: [u32; 2], seed: u64) -> [u32; 2] {
         let first = square[axis] * SIDE;
         let side = u64::from(SIDE.min(size[axis] - first));
         let part = word >> (32 * axis) & 0xffff_ffff;
-        first + u32::try_from(part * side >> 32).expect("less than the side")
+        first + u32::try_from((part * side) >> 32).expect("less than the side")
     })
 }
 

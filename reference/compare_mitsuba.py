@@ -2,7 +2,7 @@
 
     pip install -r requirements.txt
     cargo build --release --all-features --example render
-    DRJIT_LIBLLVM_PATH=... python3 compare_mitsuba.py [-D name=value]... [--points SET] [--adaptive] [--spp N]... [--runs R] SCENE.xml...
+    DRJIT_LIBLLVM_PATH=... python3 compare_mitsuba.py [-D name=value]... [--points SET] [--no-adaptive] [--spp N]... [--runs R] SCENE.xml...
 
 Mitsuba runs its fastest variant for processors, `llvm_ad_rgb`, with each of `SAMPLERS`; the scene's own sampler is
 replaced. The first render compiles: its time, loading included, is `cold`, and counts for nothing else. Then for every number of
@@ -11,8 +11,8 @@ behind them; ours are of rendering alone, as Mitsuba's are, and loading is told 
 
 The error is that of the pixels' means over seeds, from the differences of all pairs of runs: `mse x spp` is the mean over pixels and
 channels of the squared difference, halved, times the samples. It sees noise and no bias; so `apart` is the difference of
-the mean colours of both programs in standard errors, to be below about 3. An efficiency is 1 / (mse x seconds). The
-last line is ours over that of Mitsuba's better sampler at the same number of samples.
+the mean colours of both programs in standard errors, to be below about 3. An efficiency is 1 / (mse x seconds). Ours is rendered with as
+many samples in every pixel, and with those dealt to the pixels by `--adaptive`, which not all points can. The last line is ours over that of Mitsuba's better sampler at the same number of samples.
 """
 
 import argparse
@@ -161,7 +161,7 @@ def main() -> None:
                         help="gives a parameter of the scenes a value")
     parser.add_argument("--points", default="rescrambled")
     parser.add_argument("--adaptive", action=argparse.BooleanOptionalAction, default=True,
-                        help="renders with ours dealing samples to the pixels as well (the default)")
+                        help="renders with ours dealing samples to the pixels as well")
     parser.add_argument("--spp", type=int, action="append")
     parser.add_argument("--runs", type=int, default=5)
     program = Path(__file__).parent.parent / "target/release/examples/render"

@@ -48,8 +48,9 @@ struct Arguments {
     /// The points of the pixels; the default is blue-noise, and rescrambled with --adaptive, --time and --noise
     #[arg(long, value_enum, value_name = "SET")]
     points: Option<Points>,
-    /// Into how many independent renders the samples of --spp are split; their spread gives the error. The default is 16 with --std-error,
-    /// and 2 for points that cannot be parted. Otherwise the two halves of one set tell of the noise, rather more than there is
+    /// Into how many independent renders the samples of --spp are split, whose spread gives the error; the default is 16 with --std-error.
+    /// Without either, the passes are parts of one set of points where the set has parts, and tell of more noise than there is, by a
+    /// seventh or so
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     replicates: Option<u64>,
     /// Selects the randomisation of the points
@@ -67,8 +68,8 @@ struct Arguments {
     /// A picture to compare with
     #[arg(long, value_name = "FILE.exr")]
     reference: Option<PathBuf>,
-    /// Takes more samples where the picture varies more, as a pilot shows: two sets of an eighth of --spp, or of 16 with --time and --noise, in
-    /// one pixel of nine, which are no part of the picture
+    /// Takes more samples where the picture varies more, as a pilot shows that is no part of it: two sets of 16 points, or of the power of
+    /// two up to 64 that is next below an eighth of --spp, in one pixel of nine
     #[arg(long)]
     adaptive: bool,
     /// Ends paths by Russian roulette as a pilot of so many paths a pixel, in at most 128 x 128 pixels and twice over, shows that it pays

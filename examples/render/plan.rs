@@ -3,6 +3,8 @@
 use std::ops::Range;
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use crate::Arguments;
 use crate::points::Points;
 
@@ -10,9 +12,12 @@ use crate::points::Points;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Plan {
     passes: Passes,
-    /// Whether passes of which only the time is known go on with the points of those before.
+    /// Whether passes whose number is not known go on with the points of those before.
     goes_on: bool,
-    /// Points in each of the two sets of one pixel of nine that decide beforehand how all samples are dealt to the pixels; 0 if there are none.
+    /// Whether every pass is to tell of the errors of pixels.
+    independent: bool,
+    /// Points in each of the two sets of one pixel of nine that decide beforehand how all samples are dealt to the pixels; 0 if none
+    /// do.
     pub(crate) pilot: u64,
 }
 
@@ -26,13 +31,13 @@ enum Passes {
 }
 
 /// A part of a set of points for each pixel.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub(crate) struct Pass {
     /// The number of the set: sets of other numbers are independent of it.
     pub(crate) set: u64,
-    /// How many points it has, in the mean over the pixels.
+    /// A number of points, in the mean over the pixels: all that it has, or those of a part.
     pub(crate) points: u64,
-    /// Which of them.
+    /// Which of its points, where each pixel has `points` of them.
     pub(crate) part: Range<u64>,
 }
 
@@ -51,19 +56,33 @@ impl Pass {
         self.part.end - self.part.start
     }
 
-    /// Its points in a pixel whose set has `points` of them.
+    /// Which of its points in a pixel that has another number than [`points`](Self::points) of them.
     pub(crate) fn of(&self, points: u64) -> Range<u64> {
         let at = |end: u64| {
             let place = u128::from(points) * u128::from(end) / u128::from(self.points);
-            u64::try_from(place).expect("no more than there are")
+            u64::try_from(place).unwrap_or(u64::MAX)
         };
         at(self.part.start)..at(self.part.end)
     }
 
-    /// The two halves of a set, of which the first has no points more than the second.
-    fn halves(set: u64, points: u64) -> [Self; 2] {
+    /// The two halves of the first set, of which the first has no more points than the second.
+    fn halves(points: u64) -> [Self; 2] {
         let middle = points / 2;
-        [0..middle, middle..points].map(|part| Self { set, points, part })
+        [0..middle, middle..points].map(|part| Self {
+            set: 0,
+            points,
+            part,
+        })
+    }
+
+    /// Two parts of the first set, each with as many points as the other in every pixel; without one of them if their number is odd.
+    fn equal_parts(points: u64) -> [Self; 2] {
+        let half = points / 2;
+        [0..half, half..2 * half].map(|part| Self {
+            set: 0,
+            points: half,
+            part,
+        })
     }
 }
 
@@ -89,6 +108,7 @@ impl Plan {
         let plan = |passes, pilot| Self {
             passes,
             goes_on: points.go_on() && !independent && !arguments.adaptive,
+            independent,
             pilot,
         };
         if let Some(seconds) = arguments.time {
@@ -99,7 +119,7 @@ impl Plan {
             return Ok(plan(Passes::Noise(noise), adaptive(PILOT)));
         }
         let spp = arguments.spp.unwrap_or(of_the_file);
-        // A power of two for nets. Two sets in one pixel of nine: less than a thirtieth of all samples.
+        // A power of two for nets. Two sets in one pixel of nine: a thirtieth of all samples, more if they are few.
         let pilot = adaptive(1 << (spp / 8).clamp(1, MOST_OF_PILOT).ilog2());
         let spp = spp - (2 * pilot).div_ceil(9);
         if spp == 0 {
@@ -121,21 +141,21 @@ impl Plan {
             let whole = |(set, points)| Pass::whole(set, points);
             (0..).zip(samples).map(whole).collect()
         } else {
-            // Of an adaptive picture each pixel has an eighth of the mean or more, which is to have two halves.
-            let least = if arguments.adaptive { 16 } else { 2 };
-            let mut sets = match points.are_powers_of_two() {
+            // Where pixels have as many points as a pilot deals, both halves have the same number.
+            let halves = if arguments.adaptive {
+                Pass::equal_parts
+            } else {
+                Pass::halves
+            };
+            let sets = match points.are_powers_of_two() {
                 true => powers(spp).collect(),
                 false => vec![spp],
-            }
-            .into_iter();
-            let first = sets.next().unwrap_or(spp);
-            let first = match first < least {
-                true => vec![Pass::whole(0, first)],
-                false => Pass::halves(0, first).into(),
             };
-            let others = (1..).zip(sets);
-            let others = others.map(|(set, points)| Pass::whole(set, points));
-            first.into_iter().chain(others).collect()
+            let passes = (0..).zip(sets).flat_map(|(set, points)| match set {
+                0 if points > 1 => Vec::from(halves(points)),
+                _ => vec![Pass::whole(set, points)],
+            });
+            passes.collect()
         };
         Ok(plan(Passes::Known(passes), pilot))
     }
@@ -163,7 +183,7 @@ impl Plan {
             Passes::Known(known) => known.get(usize::try_from(passes).ok()?).cloned(),
             Passes::Noise(target) => {
                 let reached = passes >= FEWEST && noise.is_some_and(|noise| noise <= *target);
-                (!reached).then(|| Pass::whole(passes, doubled))
+                (!reached).then(|| self.after(passes, done, doubled))
             }
             Passes::Time(time) => {
                 let left = time.as_secs_f64() - seconds;
@@ -172,16 +192,28 @@ impl Plan {
                 while samples > 1 && samples as f64 > fitting {
                     samples /= 2;
                 }
-                (passes == 0 || fitting >= 1.0).then(|| match self.goes_on {
-                    true => Pass {
-                        set: 0,
-                        points: done + samples,
-                        part: done..done + samples,
-                    },
-                    false => Pass::whole(passes, samples),
-                })
+                (passes == 0 || fitting >= 1.0).then(|| self.after(passes, done, samples))
             }
         }
+    }
+
+    /// The pass of so many samples that comes after `passes` passes with `done`.
+    fn after(&self, passes: u64, done: u64, samples: u64) -> Pass {
+        if self.goes_on {
+            let points = done + samples;
+            return Pass {
+                set: 0,
+                points,
+                part: done..points,
+            };
+        }
+        Pass::whole(passes, samples)
+    }
+
+    /// Whether the error is best told by a pass and all `done` before it, not by those before it one by one: where it has as many
+    /// samples. Of smaller sets the errors are larger, for as many samples in all.
+    pub(crate) fn is_half(&self, pass: &Pass, done: u64) -> bool {
+        !self.independent && pass.samples() == done
     }
 
     /// How much of the work is done, in `[0, 1]`, if that can be told.
@@ -201,4 +233,101 @@ fn powers(number: u64) -> impl Iterator<Item = u64> {
         .rev()
         .map(|bit| 1 << bit)
         .filter(move |power| number & power != 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::{Parser, ValueEnum};
+
+    use super::*;
+
+    fn plan(arguments: &[&str], points: Points) -> Plan {
+        let arguments = ["render", "scene.xml"].iter().chain(arguments);
+        Plan::new(&Arguments::parse_from(arguments), points, 16).unwrap()
+    }
+
+    fn known(plan: Plan) -> Vec<Pass> {
+        match plan.passes {
+            Passes::Known(passes) => passes,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn passes_have_all_samples_and_parts_all_points() {
+        for &points in Points::value_variants() {
+            for spp in (1..300).chain([1024, 12_345, 1 << 33]) {
+                let text = spp.to_string();
+                for more in [&[][..], &["--std-error", "x.exr"], &["--replicates", "3"]] {
+                    if points.are_powers_of_two() && spp > 1 << 32 && more.is_empty() {
+                        continue;
+                    }
+                    let passes = known(plan(&[&["--spp", &text], more].concat(), points));
+                    assert_eq!(passes.iter().map(Pass::samples).sum::<u64>(), spp);
+                    assert!(passes.iter().all(|pass| pass.samples() > 0));
+                    for (number, pass) in passes.iter().enumerate() {
+                        let mut before = passes[..number].iter().rev();
+                        let before = before.find(|other| other.set == pass.set);
+                        let end = before.map_or(0, |other| other.part.end);
+                        assert_eq!(pass.part.start, end, "{points} {spp}");
+                        // The next set begins where all of this one are taken.
+                        let last = passes[number + 1..]
+                            .iter()
+                            .all(|other| other.set > pass.set);
+                        assert!(!last || pass.part.end == pass.points, "{points} {spp}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn both_parts_of_an_adaptive_picture_have_as_many_points_in_every_pixel() {
+        for spp in 2..600 {
+            let plan = plan(
+                &["--adaptive", "--spp", &spp.to_string()],
+                Points::Rescrambled,
+            );
+            let pilot = (2 * plan.pilot).div_ceil(9);
+            let passes = known(plan);
+            let samples: u64 = passes.iter().map(Pass::samples).sum();
+            assert!((spp - pilot - 1..=spp - pilot).contains(&samples), "{spp}");
+            for count in [1, 2, 3, 64, 1 << 40] {
+                match &passes[..] {
+                    [one] => assert_eq!(one.of(count), 0..count),
+                    [one, other] => {
+                        assert_eq!(one.points, other.points);
+                        assert_eq!(
+                            (one.of(count), other.of(count)),
+                            (0..count, count..2 * count)
+                        );
+                    }
+                    _ => panic!("{passes:?}"),
+                }
+            }
+        }
+        let arguments = Arguments::parse_from(["render", "scene.xml", "--adaptive", "--spp", "1"]);
+        assert!(Plan::new(&arguments, Points::Rescrambled, 16).is_err());
+    }
+
+    #[test]
+    fn what_is_rendered_by_time_goes_on_with_one_set() {
+        let plan = plan(&["--time", "10"], Points::Rescrambled);
+        let (mut passes, mut done) = (0, 0);
+        // A sample a second hundredth.
+        while let Some(pass) = plan.next(passes, done, [done as f64 / 100.0; 2], None) {
+            assert_eq!((pass.set, pass.part.start), (0, done));
+            done += pass.samples();
+            passes += 1;
+        }
+        assert_eq!(done, 1000);
+        let independent = |more: &[&str], points| {
+            let plan = self::plan(&[&["--time", "10"], more].concat(), points);
+            let pass = plan.next(3, 4, [0.1; 2], None).unwrap();
+            assert_eq!(pass, Pass::whole(3, 4));
+            assert_eq!(plan.is_half(&pass, 4), more.is_empty());
+        };
+        independent(&["--std-error", "x.exr"], Points::Sobol);
+        independent(&[], Points::NRooks);
+    }
 }

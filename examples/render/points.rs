@@ -63,7 +63,8 @@ impl Points {
         }
     }
 
-    /// Whether the halves of a set are as good as sets of that size: sequences, and blue noise.
+    /// Whether parts of a set can be taken one after the other, as of sequences and blue noise. A part may be less even than a set of its
+    /// size.
     pub(crate) fn come_in_parts(self) -> bool {
         self.go_on() || self == Self::BlueNoise
     }
@@ -75,16 +76,9 @@ impl Points {
         seed: u64,
         count: u64,
     ) -> Result<Box<dyn PointSet>, Error> {
-        match self {
-            Self::BlueNoise => Ok(Box::new(BlueNoise::new(count, seed)?.pixel(position))),
-            others => others.of_key(pixel::seed(position, seed), count),
-        }
-    }
-
-    /// About `count` points that `key` selects, blue noise at the corner of its picture.
-    pub(crate) fn of_key(self, key: u64, count: u64) -> Result<Box<dyn PointSet>, Error> {
+        let key = pixel::seed(position, seed);
         Ok(match self {
-            Self::BlueNoise => Box::new(BlueNoise::new(count, key)?.pixel([0, 0])),
+            Self::BlueNoise => Box::new(BlueNoise::new(count, seed)?.pixel(position)),
             Self::Sobol => Box::new(Sobol::new(DIMENSIONS)?.scrambled(HashedOwen { seed: key })),
             Self::Rescrambled => Box::new(Rescrambled::new(4, key)?),
             Self::Halton => Box::new(Halton::new(DIMENSIONS)?.scrambled(Owen { seed: key })),

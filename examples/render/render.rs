@@ -23,8 +23,9 @@ const TICK: Duration = Duration::from_millis(100);
 const SAVE: Duration = Duration::from_secs(5);
 const SAVE_RATIO: u32 = 20;
 
-/// How many paths are followed at once, about: many, since lanes are idle at the end, but little work to be lost.
-const TOGETHER: u64 = 4096;
+/// How many paths of neighbouring pixels are asked for at once, about: many, since lanes are idle at their end, but few enough for
+/// Ctrl-C not to wait.
+const ASKED: u64 = 4096;
 
 /// Tells the seed of the pilot from that of the picture.
 const DEALING: u64 = 0x6465_616c;
@@ -76,7 +77,7 @@ impl Job<'_> {
         // How the points of sets of so many are dealt.
         let mut dealt: Option<(u64, Counts)> = None;
         while !self.stop.load(Ordering::Relaxed) {
-            let Some(pass) = self.next(&lock(state)) else {
+            let Some(pass) = lock(state).begin(|state| self.next(state)) else {
                 return Ok(());
             };
             let done = self.look(state)?;
@@ -97,7 +98,11 @@ impl Job<'_> {
                 .into_iter()
                 .all(|done| done)
             {
-                lock(state).complete(pass.samples());
+                let mut state = lock(state);
+                if self.plan.is_half(&pass, state.samples) {
+                    state.forget_parts();
+                }
+                state.complete(pass.samples());
             }
         }
         Ok(())
@@ -112,7 +117,7 @@ impl Job<'_> {
         }
         let start = Instant::now();
         let seed = hash::hash(self.seed, DEALING);
-        let points = |key| self.points.of_key(key, count);
+        let points = |key| self.points.of_pixel([0, 0], key, count);
         let proceed = || !self.stop.load(Ordering::Relaxed) && self.plan.has_time(start.elapsed());
         let allocation = (self.picture)
             .allocate_while(self.size, seed, count, &points, &proceed)
@@ -169,7 +174,7 @@ impl Job<'_> {
             }
             let mut some = Vec::new();
             let mut paths = 0;
-            while x < self.size[0] && paths < TOGETHER {
+            while x < self.size[0] && paths < ASKED {
                 let position = [x, y];
                 let count = counts.of(position, self.size);
                 let points = self.points.of_pixel(position, seed, count);
@@ -213,7 +218,7 @@ impl Job<'_> {
             let seconds = before + start.elapsed().as_secs_f64();
             {
                 let state = lock(state);
-                let next = self.next(&state);
+                let next = state.pass.clone().or_else(|| self.next(&state));
                 let next = next.map_or(0, |pass| pass.samples());
                 let done = state.samples as f64 + state.part() * next as f64;
                 let fraction = self.plan.fraction(done, seconds, state.noise());

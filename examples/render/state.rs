@@ -7,6 +7,8 @@ use estimand::path::{Allocation, Image};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use crate::plan::Pass;
+
 /// What has been rendered so far: all of some passes, and some rows of one.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct State {
@@ -16,9 +18,11 @@ pub(crate) struct State {
     pub(crate) samples: u64,
     /// Of all pixels: the mean over the passes, weighted by their samples.
     mean: Vec<[f64; 3]>,
-    /// Of all pixels: the sum of squared deviations from it, weighted alike.
+    /// Of all pixels: the sum of squared deviations of some parts from it, weighted alike, and of how many parts.
     deviation: Vec<[f64; 3]>,
-    /// The rows of the pass that is not complete.
+    parts: u64,
+    /// The pass that is not complete, and its rows.
+    pub(crate) pass: Option<Pass>,
     rows: Vec<Option<Row>>,
     /// How samples are dealt to the pixels, once a pilot has told.
     #[serde(default)]
@@ -50,6 +54,8 @@ impl State {
             samples: 0,
             mean: vec![[0.0; 3]; width * height],
             deviation: vec![[0.0; 3]; width * height],
+            parts: 0,
+            pass: None,
             rows: vec![None; height],
             allocation: None,
             paths: 0,
@@ -64,6 +70,12 @@ impl State {
         self.paths += says.as_ref().map_or(0, Allocation::used);
         self.allocation = says;
         self.pilot_seconds += took.as_secs_f64();
+    }
+
+    /// The pass that was begun, or the next one, which is begun then.
+    pub(crate) fn begin(&mut self, next: impl FnOnce(&Self) -> Option<Pass>) -> Option<Pass> {
+        self.pass = self.pass.take().or_else(|| next(self));
+        self.pass.clone()
     }
 
     /// Whether a row of the present pass is there.
@@ -83,9 +95,17 @@ impl State {
         self.rows[at] = Some(row);
     }
 
+    /// Takes what is there as one part, whose own parts are forgotten: they were too small to tell of it.
+    pub(crate) fn forget_parts(&mut self) {
+        self.deviation.fill([0.0; 3]);
+        self.parts = self.parts.min(1);
+    }
+
     /// Merges the rows of a complete pass of so many samples into the picture.
     pub(crate) fn complete(&mut self, samples: u64) {
+        self.pass = None;
         self.passes += 1;
+        self.parts += 1;
         self.samples += samples;
         let weight = samples as f64;
         let share = weight / self.samples as f64;
@@ -101,7 +121,7 @@ impl State {
         }
     }
 
-    /// The root-mean-square error of the pixels over the mean, as estimated; `None` before there are two passes.
+    /// The root-mean-square error of the pixels over the mean, as estimated; `None` before there are two parts.
     pub(crate) fn noise(&self) -> Option<f64> {
         let divisor = self.divisor()?;
         let squares: f64 = self.deviation.as_flattened().iter().sum();
@@ -113,7 +133,7 @@ impl State {
 
     /// What deviations are divided by to be squared standard errors.
     fn divisor(&self) -> Option<f64> {
-        (self.passes > 1).then(|| (self.passes - 1) as f64 * self.samples as f64)
+        (self.parts > 1).then(|| (self.parts - 1) as f64 * self.samples as f64)
     }
 
     /// The picture: of complete passes, or of the rows of the first one, black elsewhere.

@@ -55,8 +55,9 @@ pub struct Adapted {
 }
 
 impl Adaptive {
-    /// `count` samples a pixel in the mean over the picture, of which twice `pilot` in one pixel of nine decide how the others are
-    /// dealt.
+    /// `count` samples a pixel in the mean over the picture, of which twice `pilot` in one pixel of every three by three decide how the
+    /// others are dealt, one a pixel at least. At the edges the threes may be smaller, and all of a picture may be one: then the pilot takes
+    /// a larger part.
     ///
     /// # Errors
     ///
@@ -142,7 +143,9 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         let Adaptive { count, pilot } = adaptive;
         let points = |key| Ok(Independent::new(key));
         let allocation = self.allocate(size, hash::hash(seed, PILOT), pilot, points)?;
-        let samples = allocation.counts(count - of_pilot(pilot));
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let spent = allocation.used().div_ceil(pixels);
+        let samples = allocation.counts(count.saturating_sub(spent));
         let image = Image::of_pixels(size, seed, |[x, y], key| {
             let count = samples[y as usize * size[0] as usize + x as usize];
             estimator(key, count).estimate(&self.pixel([x, y], size))

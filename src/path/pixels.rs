@@ -39,7 +39,7 @@ impl<P: PointSet> Share<P> {
 
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F> {
     /// The mean of each of some pixels of a picture of `size`: what [`Average`] gives for the [`pixel`](Self::pixel) alone, to the bit,
-    /// but for the time.
+    /// but for the [time](crate::Estimate::seconds), which may be 0: that of pixels together is not told apart.
     ///
     /// Where many paths are followed at once, those of the next pixel begin where those of one run out, which is several times as
     /// fast for a few points a pixel, and somewhat faster for some hundreds. A few thousand points in all are enough for that.
@@ -195,6 +195,7 @@ fn few<P: PointSet>(share: &Share<P>) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::path::filter::{BoxFilter, Filtered};
     use crate::path::scenes;
     use crate::points::{Hammersley, Independent, Rescrambled, pixel};
 
@@ -243,5 +244,70 @@ mod tests {
             view.averages(size, &[] as &[Share<Independent>], NonFinite::Fail)
                 .is_empty()
         );
+    }
+
+    /// Sees nothing of the column 2, and cannot say so; in the column 4 it is too bright for squares.
+    struct Faulty;
+
+    impl Filter for Faulty {
+        fn sample(&self, position: [u32; 2], size: [u32; 2], u: [f64; 2]) -> Filtered {
+            let weight = match position[0] {
+                2 if u[0] < 0.25 => f32::NAN,
+                4 => 1e38,
+                _ => 1.0,
+            };
+            Filtered {
+                weight,
+                ..BoxFilter.sample(position, size, u)
+            }
+        }
+    }
+
+    #[test]
+    fn what_plain_arithmetic_does_not_do_is_as_it_is_alone() {
+        let size = [6, 1];
+        let View {
+            scene,
+            sensor,
+            paths,
+            ..
+        } = scenes::cornell_box();
+        let mut view = View {
+            scene,
+            sensor,
+            filter: Faulty,
+            paths,
+        };
+        let shares: Vec<_> = (0..6)
+            .map(|x| Share {
+                position: [x, 0],
+                points: Rescrambled::new(4, u64::from(x)).unwrap(),
+                count: 64,
+            })
+            .collect();
+        for hides in [false, true] {
+            if hides {
+                // Such paths are followed one by one.
+                view.paths = view.paths.hiding_lights();
+            }
+            for rule in [NonFinite::Reject, NonFinite::Fail] {
+                for (share, outcome) in shares.iter().zip(view.averages(size, &shares, rule)) {
+                    let alone = view.alone(size, share, rule);
+                    match (outcome, alone) {
+                        (Ok(outcome), Ok(alone)) => {
+                            let expected = if share.position[0] == 2 { 16 } else { 0 };
+                            assert_eq!(outcome.rejected, expected);
+                            assert_eq!(outcome.mean, alone.mean);
+                        }
+                        (outcome, alone) => {
+                            assert_eq!(share.position[0], 2);
+                            let reasons =
+                                [outcome, alone].map(|it| format!("{:?}", it.unwrap_err().reason));
+                            assert_eq!(reasons[0], reasons[1]);
+                        }
+                    }
+                }
+            }
+        }
     }
 }

@@ -96,7 +96,7 @@ impl BlueNoisePixel {
         let key = hash(hash(self.image.seed, image), u64::from(pair));
         Pair {
             axes: [0, 1].map(|axis| hash(!key, axis)),
-            curve: Curve::of_pixel(key, self.pixel),
+            curve: Curve::new(key).followed_by(self.pixel, 32),
         }
     }
 }
@@ -252,23 +252,6 @@ impl Curve {
         }
     }
 
-    /// At a pixel: its 16 digits are the first ones. What [`followed_by`](Self::followed_by) makes of them, all at once.
-    #[inline(always)]
-    fn of_pixel(key: u64, pixel: u64) -> Self {
-        const DIGITS: u32 = 16;
-        let start = Self::new(key);
-        let mut images = [0; DIGITS as usize];
-        for (image, left) in images.iter_mut().zip((0..).step_by(2)) {
-            let digits = (start.digits << (2 * DIGITS) | pixel) >> left;
-            *image = permute_4(start.order(digits >> 2), digits & 3) << left;
-        }
-        Self {
-            digits: start.digits << (2 * DIGITS) | pixel,
-            shuffled: images.iter().fold(0, |all, image| all | image),
-            ..start
-        }
-    }
-
     /// With the lowest `bits` bits of `word`, 32 at most, as its next digits. Where their number is odd, the last digit is in base 2.
     #[inline(always)]
     fn followed_by(self, word: u64, bits: u32) -> Self {
@@ -376,25 +359,6 @@ mod tests {
     use crate::hash::permute;
     use crate::points::scramble::DigitOrder;
     use crate::points::sobol::{multiplied, table};
-
-    #[test]
-    fn the_digits_of_a_pixel_follow_one_another() {
-        for (key, pixel) in [(0, 0), (5, 0xffff_ffff), (u64::MAX, 0x1234_5678), (9, 1)] {
-            let [together, singly] = [
-                Curve::of_pixel(key, pixel),
-                Curve::new(key).followed_by(pixel, 32),
-            ];
-            let one_by_one = (0..16).rev().fold(Curve::new(key), |curve, digit| {
-                curve.followed_by(pixel >> (2 * digit), 2)
-            });
-            for other in [singly, one_by_one] {
-                assert_eq!(
-                    (together.digits, together.shuffled),
-                    (other.digits, other.shuffled)
-                );
-            }
-        }
-    }
 
     #[test]
     fn every_square_of_pixels_has_a_net() {

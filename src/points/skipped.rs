@@ -6,9 +6,9 @@ use super::{PointSet, check, fill_singly};
 
 /// The points of a set from one of them on.
 ///
-/// To go on with a sequence where an estimate of its first points ended: both together are an estimate of all of them. On their own
-/// the points of a net's second half are a net in most sequences, but what a set promises of its first points it does not
-/// promise of others. Past the last index the points begin anew.
+/// To go on with a sequence where an estimate of its first points ended: both together are an estimate of all of them. What a set promises
+/// of its first points it does not promise of others, so that these have neither [`size`](PointSet::size) nor
+/// [`radix`](PointSet::radix). Past the last index the points begin anew.
 ///
 /// ```
 /// use estimand::points::{Halton, PointSet, Skipped};
@@ -37,11 +37,6 @@ impl<P: PointSet> PointSet for Skipped<P> {
     fn coordinate(&self, index: u64, dimension: u32) -> f64 {
         self.points
             .coordinate(index.wrapping_add(self.skip), dimension)
-    }
-
-    /// `None`: a part of a finite set has no meaning as a whole.
-    fn size(&self) -> Option<u64> {
-        None
     }
 
     fn dimensions(&self) -> u32 {

@@ -1,11 +1,12 @@
 //! The point sets of pixels, randomised anew in each.
 
 use std::fmt;
+use std::ops::Range;
 
 use clap::ValueEnum;
 use estimand::points::{
     BlueNoise, Halton, Hammersley, HashedOwen, Independent, MultiJittered, NRooks, Owen, PointSet,
-    Rescrambled, Sobol, Stratified, pixel,
+    Rescrambled, Skipped, Sobol, Stratified, pixel,
 };
 use estimand::{Error, hash};
 
@@ -92,5 +93,46 @@ impl Points {
             Self::NRooks => Box::new(NRooks::new(count, key)?),
             Self::Independent => Box::new(Independent::new(key)),
         })
+    }
+
+    /// A part of them: as many points as it is long.
+    pub(crate) fn of_part(
+        self,
+        position: [u32; 2],
+        seed: u64,
+        count: u64,
+        part: Range<u64>,
+    ) -> Result<Box<dyn PointSet>, Error> {
+        let points = self.of_pixel(position, seed, count)?;
+        // A finite set would be taken whole.
+        let whole = part.start == 0 && points.size().is_none_or(|size| size == part.end);
+        Ok(match whole {
+            true => points,
+            false => Box::new(Skipped::new(points, part.start)),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_those_of_the_whole() {
+        for &points in Points::value_variants() {
+            let whole = points.of_pixel([3, 4], 5, 64).unwrap();
+            for part in [0..64, 0..32, 32..64, 64..128] {
+                let some = points.of_part([3, 4], 5, 64, part.clone()).unwrap();
+                let is_all = part == (0..64);
+                assert!(some.size().is_none() || is_all, "{points} {part:?}");
+                for index in 0..3 {
+                    let [one, other] = [
+                        some.coordinate(index, 7),
+                        whole.coordinate(part.start + index, 7),
+                    ];
+                    assert_eq!(one, other, "{points} {part:?}");
+                }
+            }
+        }
     }
 }

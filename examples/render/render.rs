@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use estimand::mitsuba::Picture;
 use estimand::path::Share;
-use estimand::points::{PointSet, Skipped};
+use estimand::points::PointSet;
 use estimand::{each, hash};
 
 use crate::checkpoint::Checkpoint;
@@ -177,13 +177,10 @@ impl Job<'_> {
             while x < self.size[0] && paths < ASKED {
                 let position = [x, y];
                 let count = counts.of(position, self.size);
-                let points = self.points.of_pixel(position, seed, count);
                 let part = pass.of(count);
                 let samples = part.end - part.start;
-                let mut points = points.map_err(|e| e.to_string())?;
-                if samples < count {
-                    points = Box::new(Skipped::new(points, part.start));
-                }
+                let points = self.points.of_part(position, seed, count, part);
+                let points = points.map_err(|e| e.to_string())?;
                 some.push((position, points, samples));
                 paths = paths.saturating_add(samples);
                 x += 1;

@@ -48,9 +48,8 @@ struct Arguments {
     /// The points of the pixels; the default is blue-noise, and rescrambled with --adaptive, --time and --noise
     #[arg(long, value_enum, value_name = "SET")]
     points: Option<Points>,
-    /// Into how many independent renders the samples of --spp are split, whose spread gives the error; the default is 16 with --std-error.
-    /// Without either, the passes are parts of one set of points where the set has parts, and tell of more noise than there is, by a
-    /// seventh or so
+    /// Into how many independent renders the samples of --spp are split, whose spread gives the error: 16 with --std-error, otherwise 2 if the
+    /// points are a finite set. Sequences are rendered in two parts, which tell of more noise than there is, by a seventh or so
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     replicates: Option<u64>,
     /// Selects the randomisation of the points

@@ -125,7 +125,7 @@ impl Plan {
         if spp == 0 {
             return Err("--adaptive needs at least 2 samples a pixel".to_owned());
         }
-        let passes = if independent || !points.come_in_parts() {
+        let passes = if independent || !points.go_on() {
             let replicates = arguments.replicates.unwrap_or(match arguments.std_error {
                 Some(_) => 16,
                 None => 2,
@@ -147,15 +147,10 @@ impl Plan {
             } else {
                 Pass::halves
             };
-            let sets = match points.are_powers_of_two() {
-                true => powers(spp).collect(),
-                false => vec![spp],
-            };
-            let passes = (0..).zip(sets).flat_map(|(set, points)| match set {
-                0 if points > 1 => Vec::from(halves(points)),
-                _ => vec![Pass::whole(set, points)],
-            });
-            passes.collect()
+            match spp {
+                1 => vec![Pass::whole(0, spp)],
+                _ => halves(spp).into(),
+            }
         };
         Ok(plan(Passes::Known(passes), pilot))
     }
@@ -259,9 +254,6 @@ mod tests {
             for spp in (1..300).chain([1024, 12_345, 1 << 33]) {
                 let text = spp.to_string();
                 for more in [&[][..], &["--std-error", "x.exr"], &["--replicates", "3"]] {
-                    if points.are_powers_of_two() && spp > 1 << 32 && more.is_empty() {
-                        continue;
-                    }
                     let passes = known(plan(&[&["--spp", &text], more].concat(), points));
                     assert_eq!(passes.iter().map(Pass::samples).sum::<u64>(), spp);
                     assert!(passes.iter().all(|pass| pass.samples() > 0));

@@ -7,7 +7,7 @@ use estimand::path::light::{Environment, Light};
 use estimand::path::sensor::Sensor;
 use estimand::path::{Image, Unfinished, View};
 use estimand::points::{Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Sobol, Stratified};
-use estimand::{Average, MonteCarlo, hash};
+use estimand::{MonteCarlo, hash};
 
 /// A point set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -90,8 +90,7 @@ impl Points {
     ) -> Result<Image, Unfinished> {
         let size = [size; 2];
         let average = |points: Randomised<'_>| {
-            let estimator = |key| Average::new(points(key), spp);
-            view.render_while(size, seed, estimator, &proceed)
+            view.render_points(size, seed, spp, |key| Ok(points(key)), &proceed)
         };
         match self {
             Self::MonteCarlo => {

@@ -205,7 +205,10 @@ mod tests {
         // The pilot has others.
         let counts = |seed| {
             let points = |key| Ok(Independent::new(key));
-            view.allocate([4, 4], seed, 16, points).unwrap().counts(60)
+            // Four squares of three pixels or fewer, two sets each: eight samples a pixel.
+            view.allocate([4, 4], seed, 16, points)
+                .unwrap()
+                .counts(64 - 8)
         };
         assert_eq!(adapted.samples, counts(hash::hash(3, PILOT)));
         assert_ne!(adapted.samples, counts(3));

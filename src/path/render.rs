@@ -19,9 +19,9 @@ use super::light::{Environment, Light};
 use super::packet::{Packet, Single};
 use super::roulette::Steps;
 use super::sensor::Sensor;
-use super::{Paths, Ray, Scene};
-use crate::points::pixel;
-use crate::{Error, Estimate, Estimator, Incomplete, Integrand, Outcome, Sampler, each};
+use super::{Paths, Ray, Scene, Share};
+use crate::points::{PointSet, pixel};
+use crate::{Error, Estimate, Estimator, Incomplete, Integrand, NonFinite, Outcome, Sampler, each};
 
 /// The mean radiance around a pixel, as an integral over the unit cube: two coordinates for the point of the
 /// [film](Filter::sample), those of the [sensor](Sensor::ray), those of the [path](Paths::radiance).
@@ -218,6 +218,18 @@ struct Stopped {
     incomplete: Incomplete<DVec3>,
 }
 
+impl Row {
+    /// Adds the pixel at `position`, the next one, if there is an estimate of it.
+    fn take(&mut self, position: [u32; 2], outcome: Outcome<Vec3>) -> Result<(), Stopped> {
+        let estimate = outcome.map_err(|incomplete| Stopped {
+            position,
+            incomplete,
+        })?;
+        self.push(&estimate);
+        Ok(())
+    }
+}
+
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F> {
     /// The picture, of `size[0]` by `size[1]` pixels: for every pixel the estimate of the estimator that `estimator`
     /// makes from the pixel's seed, which is [`pixel::seed`]`([x, y], seed)`. So neighbours are independent of
@@ -275,6 +287,69 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         Image::of_pixels_while(size, seed, &estimate, &proceed)
     }
 
+    /// The picture whose pixels are means over the first `count` points, or all of a finite set, that `points` makes of their seeds: what
+    /// [`render`](Self::render) gives with [`Average`](crate::Average), to the bit, and faster, since many paths are followed
+    /// at once; see [`averages`](Self::averages).
+    ///
+    /// ```
+    /// use estimand::Average;
+    /// use estimand::path::scenes;
+    /// use estimand::points::Rescrambled;
+    ///
+    /// let (view, size) = (scenes::cornell_box(), [16, 16]);
+    /// let points = |seed| Rescrambled::new(4, seed);
+    /// let picture = view.render_points(size, 1, 8, points, |_| true)?;
+    /// let singly = view.render(size, 1, |seed| Average::new(points(seed).unwrap(), 8))?;
+    /// assert_eq!(picture, singly);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// `proceed` is that of [`render_while`](Self::render_while).
+    ///
+    /// # Errors
+    ///
+    /// As [`render`](Self::render), and where `points` has an error.
+    pub fn render_points<P: PointSet>(
+        &self,
+        size: [u32; 2],
+        seed: u64,
+        count: u64,
+        points: impl Fn(u64) -> Result<P, Error> + Sync,
+        proceed: impl Fn(u32) -> bool + Sync,
+    ) -> Result<Image, Unfinished> {
+        let share = |position| -> Result<Share<P>, Stopped> {
+            let points = points(pixel::seed(position, seed)).map_err(|reason| Stopped {
+                position,
+                incomplete: reason.into(),
+            })?;
+            Ok(Share {
+                position,
+                points,
+                count,
+            })
+        };
+        Image::of_rows_while(size, &proceed, &|y| {
+            let (mut row, mut refused) = (Row::new(), None);
+            let mut shares = Vec::with_capacity(size[0] as usize);
+            for x in 0..size[0] {
+                match share([x, y]) {
+                    Ok(share) => shares.push(share),
+                    Err(stopped) => {
+                        refused = Some(stopped);
+                        break;
+                    }
+                }
+            }
+            let outcomes = self.averages(size, &shares, NonFinite::Fail);
+            for (share, outcome) in shares.iter().zip(outcomes) {
+                if let Err(stopped) = row.take(share.position, outcome) {
+                    return (row, Some(stopped));
+                }
+            }
+            (row, refused)
+        })
+    }
+
     /// The pixel in column and row `position` of a picture of `size`.
     pub fn pixel(&self, position: [u32; 2], size: [u32; 2]) -> Pixel<'_, B, L, E, C, F> {
         Pixel {
@@ -323,30 +398,38 @@ impl Image {
         estimate: &(dyn Fn([u32; 2], u64) -> Outcome<Vec3> + Sync),
         proceed: &(dyn Fn(u32) -> bool + Sync),
     ) -> Result<Self, Unfinished> {
-        let [width, height] = size;
+        Self::of_rows_while(size, proceed, &|y| {
+            let mut row = Row::new();
+            for x in 0..size[0] {
+                let position = [x, y];
+                let outcome = estimate(position, pixel::seed(position, seed));
+                if let Err(stopped) = row.take(position, outcome) {
+                    return (row, Some(stopped));
+                }
+            }
+            (row, None)
+        })
+    }
+
+    /// The picture of whatever rows `row` gives, up to the first that stops.
+    fn of_rows_while(
+        size: [u32; 2],
+        proceed: &(dyn Fn(u32) -> bool + Sync),
+        row: &(dyn Fn(u32) -> (Row, Option<Stopped>) + Sync),
+    ) -> Result<Self, Unfinished> {
+        let [_, height] = size;
         check_size(size)?;
         // The first row that is known to stop. Rows before it go on: one of them may stop too, and is to be reported then.
         let first_stopped = AtomicU32::new(u32::MAX);
         let row = |y| {
-            let mut row = Row::new();
             if y > first_stopped.load(Ordering::Relaxed) || !proceed(y) {
-                return (row, None);
+                return (Row::new(), None);
             }
-            for x in 0..width {
-                let position = [x, y];
-                match estimate(position, pixel::seed(position, seed)) {
-                    Ok(estimate) => row.push(&estimate),
-                    Err(incomplete) => {
-                        first_stopped.fetch_min(y, Ordering::Relaxed);
-                        let stopped = Stopped {
-                            position,
-                            incomplete,
-                        };
-                        return (row, Some(stopped));
-                    }
-                }
+            let (row, stopped) = row(y);
+            if stopped.is_some() {
+                first_stopped.fetch_min(y, Ordering::Relaxed);
             }
-            (row, None)
+            (row, stopped)
         };
         let rows = each(u64::from(height), |y| {
             row(u32::try_from(y).expect("the height is a u32"))

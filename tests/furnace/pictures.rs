@@ -7,7 +7,7 @@ use estimand::path::light::{AreaLights, LightTree, NoEnvironment, NoLight};
 use estimand::path::sensor::{Pinhole, Sensor};
 use estimand::path::shape::{Flat, Sphere};
 use estimand::path::{Image, Object, Paths, Pixel, Ray, Scene, View, scenes};
-use estimand::points::{Stratified, pixel};
+use estimand::points::{Rescrambled, Stratified, pixel};
 use estimand::{Average, Error, Estimator, MonteCarlo, NonFinite, Sampler};
 use glam::{DVec3, Vec3A};
 
@@ -106,6 +106,34 @@ fn a_picture_that_is_stopped_keeps_its_rows() {
     assert_eq!((part.used(), whole.used()), (5 * 8 * 4, 8 * 8 * 4));
     let none = view.render_while([8; 2], 1, plain, |_| false).unwrap();
     assert_eq!((none.used(), none.std_error()), (0, None));
+}
+
+#[test]
+fn a_picture_of_points_keeps_what_was_before_the_refused_ones() {
+    let view = scenes::cornell_box();
+    let size = [5, 6];
+    let points = |seed| Rescrambled::new(4, seed);
+    let refused = pixel::seed([3, 4], 1);
+    let picky = |seed| match seed == refused {
+        true => Err(Error::NothingLeft { rejected: 7 }),
+        false => points(seed),
+    };
+    let unfinished = view.render_points(size, 1, 3, picky, |_| true).unwrap_err();
+    assert_eq!(unfinished.position, Some([3, 4]));
+    assert_eq!(unfinished.reason, Error::NothingLeft { rejected: 7 });
+    let whole = view.render_points(size, 1, 3, points, |_| true).unwrap();
+    let (part, before) = (unfinished.image.unwrap(), 4 * 5 + 3);
+    assert_eq!(part.pixels()[..before], whole.pixels()[..before]);
+    assert!(
+        part.pixels()[before..]
+            .iter()
+            .all(|pixel| *pixel == DVec3::ZERO)
+    );
+    let rows = view
+        .render_points(size, 1, 3, points, |row| row < 4)
+        .unwrap();
+    assert_eq!(rows.pixels()[..20], whole.pixels()[..20]);
+    assert_eq!(rows.used(), 20 * 3);
 }
 
 #[test]

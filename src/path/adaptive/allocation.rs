@@ -8,7 +8,7 @@
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[must_use]
 pub struct Allocation {
-    /// In proportion to the error of a set of points in and around each pixel: the largest is 1.
+    /// In proportion to what the deviations in and around each pixel are taken for: the largest is 1.
     deviations: Vec<f64>,
     used: u64,
 }

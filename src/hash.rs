@@ -102,21 +102,17 @@ pub const fn permute(index: u64, count: u64, key: u64) -> u64 {
 }
 
 /// So few that they are shuffled one by one: on small sets of words the rounds of the bijection mix too little.
-pub(crate) const FEW: u64 = 16;
+pub(crate) const FEW: u64 = TABLE as u64;
+
+/// The same for tables.
+pub(crate) const TABLE: usize = 16;
 
 /// Where Fisher and Yates' shuffle of `0..count` puts `index`.
 #[inline]
 const fn shuffle(index: u64, count: u64, key: u64) -> u64 {
-    // 16! is below 2^45: one word has enough randomness for all the swaps.
-    let mut word = mix(key.wrapping_add(GOLDEN));
+    let mut swaps = Swaps::new(count, key);
     let mut image = index;
-    let mut last = count;
-    while last > 1 {
-        // A random place in 0..last, to be swapped with the last of them.
-        let product = word as u128 * last as u128;
-        let place = (product >> 64) as u64;
-        word = word.wrapping_mul(last);
-        last -= 1;
+    while let Some([last, place]) = swaps.next() {
         if image == last {
             image = place;
         } else if image == place {
@@ -124,6 +120,54 @@ const fn shuffle(index: u64, count: u64, key: u64) -> u64 {
         }
     }
     image
+}
+
+/// Where the shuffle of `0..count`, [`FEW`] at most, puts all of them: what [`permute`] makes of each, in the time of one.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "few numbers")]
+pub(crate) fn shuffled(count: u64, key: u64) -> [u32; TABLE] {
+    // Who is at each place.
+    let mut numbers = [0; TABLE];
+    for (number, place) in numbers.iter_mut().zip(0_u32..) {
+        *number = place;
+    }
+    let mut swaps = Swaps::new(count, key);
+    while let Some([last, place]) = swaps.next() {
+        numbers.swap(last as usize, place as usize);
+    }
+    let mut images = [0; TABLE];
+    for (place, &number) in (0..).zip(&numbers) {
+        images[number as usize] = place;
+    }
+    images
+}
+
+/// The swaps of Fisher and Yates' shuffle: each of the last of the numbers that are left with one of them.
+struct Swaps {
+    word: u64,
+    left: u64,
+}
+
+impl Swaps {
+    #[inline]
+    const fn new(count: u64, key: u64) -> Self {
+        Self {
+            // 16! is below 2^45: one word has enough randomness for all the swaps.
+            word: mix(key.wrapping_add(GOLDEN)),
+            left: count,
+        }
+    }
+
+    #[inline]
+    const fn next(&mut self) -> Option<[u64; 2]> {
+        if self.left <= 1 {
+            return None;
+        }
+        let product = self.word as u128 * self.left as u128;
+        self.word = self.word.wrapping_mul(self.left);
+        self.left -= 1;
+        Some([self.left, (product >> 64) as u64])
+    }
 }
 
 /// Rounds of a [`Bijection`]: with one fewer, pairs of images are visibly not uniform among 32 words.

@@ -2,17 +2,13 @@
 
 use super::block::vectorised;
 use super::finite::CHUNK;
-use crate::hash::{Bijection, FEW, ROUNDS, permute};
+use crate::hash::{Bijection, FEW, ROUNDS, TABLE, shuffled};
 
-/// The random permutation of `0..count` that [`permute`] makes of a key, for a count up to 2^32.
+/// The random permutation of `0..count` that [`permute`](crate::hash::permute) makes of a key, for a count up to 2^32.
 pub(super) struct Permutation {
     count: u64,
     kind: Kind,
 }
-
-/// As many as [`FEW`] are.
-const TABLE: usize = 16;
-const _: () = assert!(TABLE as u64 == FEW);
 
 enum Kind {
     /// The images of few numbers.
@@ -22,15 +18,10 @@ enum Kind {
 
 impl Permutation {
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "images of few numbers")]
     pub(super) fn new(count: u64, key: u64) -> Self {
         debug_assert!(count <= 1 << 32);
         let kind = if count <= FEW {
-            let mut images = [0; TABLE];
-            for (image, number) in images.iter_mut().zip(0..count) {
-                *image = permute(number, count, key) as u32;
-            }
-            Kind::Table(images)
+            Kind::Table(shuffled(count, key))
         } else {
             Kind::Walk(Walk::new(key))
         };
@@ -57,7 +48,7 @@ impl Permutation {
     }
 }
 
-/// The images of all numbers below `count` under the random permutation that [`permute`] makes of `key`.
+/// The images of all numbers below `count` under the random permutation that [`permute`](crate::hash::permute) makes of `key`.
 ///
 /// # Panics
 ///
@@ -165,7 +156,7 @@ impl Walk {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hash::hash;
+    use crate::hash::{hash, permute};
 
     #[test]
     fn all_are_permuted_as_each_is() {

@@ -170,6 +170,8 @@ def main() -> None:
     options.spp = options.spp or [16, 64, 256]
     if options.runs < 3:
         parser.error("--runs must be at least 3: errors come from pairs")
+    if options.adaptive and options.points == "blue-noise":
+        parser.error("blue noise has as many points in every pixel: take --no-adaptive")
     if mi.__version__ != PINNED:
         parser.error(f"Mitsuba {PINNED} is wanted, this is {mi.__version__}")
     for scene in options.scenes:

@@ -126,6 +126,7 @@ const fn shuffle(index: u64, count: u64, key: u64) -> u64 {
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "few numbers")]
 pub(crate) fn shuffled(count: u64, key: u64) -> [u32; TABLE] {
+    debug_assert!(count <= FEW);
     // Who is at each place.
     let mut numbers = [0; TABLE];
     for (number, place) in numbers.iter_mut().zip(0_u32..) {

@@ -19,8 +19,13 @@ pub(crate) struct Checkpoint {
 
 #[derive(Deserialize)]
 struct Saved {
-    work: u64,
     state: State,
+}
+
+/// What a file is about, whatever else is in it: the state of other work may be of another kind.
+#[derive(Deserialize)]
+struct About {
+    work: u64,
 }
 
 #[derive(Serialize)]
@@ -42,17 +47,23 @@ impl Checkpoint {
     }
 
     /// The saved work; `None` if there is none.
-    pub(crate) fn load(&self) -> Result<Option<State>, Box<dyn Error>> {
+    pub(crate) fn load(&self, size: [u32; 2]) -> Result<Option<State>, Box<dyn Error>> {
         let about = |error: &dyn std::fmt::Display| format!("{}: {error}", self.file.display());
         if !self.file.exists() {
             return Ok(None);
         }
-        let file = File::open(&self.file).map_err(|e| about(&e))?;
-        let saved: Saved = serde_json::from_reader(BufReader::new(file)).map_err(|e| about(&e))?;
-        if saved.work != self.work {
+        let open = || File::open(&self.file).map(BufReader::new);
+        let opened = open().map_err(|e| about(&e))?;
+        let what: About = serde_json::from_reader(opened).map_err(|e| about(&e))?;
+        if what.work != self.work {
             return Err(about(&"this checkpoint is of another scene or of other arguments").into());
         }
-        Ok(Some(saved.state))
+        let opened = open().map_err(|e| about(&e))?;
+        let Saved { state } = serde_json::from_reader(opened).map_err(|e| about(&e))?;
+        match state.is_of(size) {
+            true => Ok(Some(state)),
+            false => Err(about(&"this checkpoint is damaged").into()),
+        }
     }
 
     /// Saves the work: the file is always whole, an old one or the new one.

@@ -42,7 +42,8 @@ struct Arguments {
     /// Stops after this time of rendering
     #[arg(long, value_name = "SECONDS", group = "length", value_parser = positive)]
     time: Option<f64>,
-    /// Stops when the root-mean-square error of the pixels, as it is estimated, is below this part of the mean
+    /// Stops when the root-mean-square error of the pixels, as it is estimated, is below this part of the mean. Of sequences it is estimated from
+    /// parts of one set of points, each of 64 where there are more than 128, and is rather too large: by a sixth in the Cornell box
     #[arg(long, value_name = "RELATIVE_ERROR", group = "length", value_parser = positive)]
     noise: Option<f64>,
     /// The points of the pixels; the default is blue-noise, and rescrambled with --adaptive, --time and --noise
@@ -50,7 +51,7 @@ struct Arguments {
     points: Option<Points>,
     /// Into how many independent renders the samples of --spp are split, whose spread gives the error: 16 with --std-error, otherwise 2 if the
     /// points are a finite set. Sequences are rendered in two parts, which tell of more noise than there is, by a seventh or so
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", conflicts_with_all = ["time", "noise"], value_parser = clap::value_parser!(u64).range(1..))]
     replicates: Option<u64>,
     /// Selects the randomisation of the points
     #[arg(long, value_name = "S", default_value_t = 1)]
@@ -67,8 +68,9 @@ struct Arguments {
     /// A picture to compare with
     #[arg(long, value_name = "FILE.exr")]
     reference: Option<PathBuf>,
-    /// Takes more samples where the picture varies more, as a pilot shows that is no part of it: two sets of 16 points, or of the power of
-    /// two up to 64 that is next below an eighth of --spp, in one pixel of nine
+    /// Takes more samples where the picture varies more, as a pilot shows that is no part of it: two sets of points in one pixel of nine. They have
+    /// 16 points with --time and --noise, otherwise an eighth of the samples of a pixel, but a power of two, 64 at most. An odd sample may be
+    /// left out, and small pictures have more pixels than one of nine in the pilot
     #[arg(long)]
     adaptive: bool,
     /// Ends paths by Russian roulette as a pilot of so many paths a pixel, in at most 128 x 128 pixels and twice over, shows that it pays

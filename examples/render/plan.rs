@@ -51,6 +51,11 @@ impl Pass {
         }
     }
 
+    /// Whether it is one that a plan can have made.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.points > 0 && self.part.start <= self.part.end
+    }
+
     /// How many samples it has, in the mean over the pixels.
     pub(crate) fn samples(&self) -> u64 {
         self.part.end - self.part.start

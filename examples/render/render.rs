@@ -46,7 +46,7 @@ impl Job<'_> {
     /// its own there.
     pub(crate) fn run(&self) -> Result<State, Box<dyn Error>> {
         let saved = match self.checkpoint {
-            Some(checkpoint) => checkpoint.load()?,
+            Some(checkpoint) => checkpoint.load(self.size)?,
             None => None,
         };
         let state = Mutex::new(saved.unwrap_or_else(|| State::new(self.size)));

@@ -25,7 +25,6 @@ pub(crate) struct State {
     pub(crate) pass: Option<Pass>,
     rows: Vec<Option<Row>>,
     /// How samples are dealt to the pixels, once a pilot has told.
-    #[serde(default)]
     pub(crate) allocation: Option<Allocation>,
     /// Evaluations of all that is here and of the pilot.
     pub(crate) paths: u64,
@@ -33,7 +32,6 @@ pub(crate) struct State {
     pub(crate) rejected: u64,
     /// The time that it took, and how much of it the pilot.
     pub(crate) seconds: f64,
-    #[serde(default)]
     pub(crate) pilot_seconds: f64,
 }
 
@@ -63,6 +61,18 @@ impl State {
             seconds: 0.0,
             pilot_seconds: 0.0,
         }
+    }
+
+    /// Whether it is of a picture of that size, and all there.
+    pub(crate) fn is_of(&self, [width, height]: [u32; 2]) -> bool {
+        let [width, height] = [width as usize, height as usize];
+        let pixels = width * height;
+        let rows = self.rows.iter().flatten();
+        self.width == width
+            && self.rows.len() == height
+            && [self.mean.len(), self.deviation.len()] == [pixels; 2]
+            && rows.map(|row| row.mean.len()).all(|pixels| pixels == width)
+            && self.pass.as_ref().is_none_or(Pass::is_sound)
     }
 
     /// Keeps what a pilot says, if it was not stopped.
@@ -154,5 +164,73 @@ impl State {
         let error = |deviation: &[f64; 3]| DVec3::from(deviation.map(|sum| (sum / divisor).sqrt()));
         let errors = self.deviation.iter().map(error).collect();
         image.with_std_error(Image::new(self.width, errors)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With a pass of a row of one pixel.
+    fn after(state: &mut State, samples: u64, value: f64) {
+        let row = Row {
+            mean: vec![[value; 3]],
+            ..Row::default()
+        };
+        state.add(0, row);
+        state.complete(samples);
+    }
+
+    #[test]
+    fn two_halves_tell_of_the_noise() {
+        let mut state = State::new([1, 1]);
+        for (samples, value) in [(1, 9.0), (1, 1.0), (2, 3.0)] {
+            after(&mut state, samples, value);
+            assert_eq!(state.noise().is_some(), state.samples > 1);
+        }
+        // 5 in the mean of the first two, 3 of the other two.
+        assert_eq!((state.passes, state.samples, state.parts), (3, 4, 3));
+        let mut halves = state.clone();
+        halves.forget_parts();
+        assert_eq!(halves.noise(), None);
+        after(&mut halves, 4, 6.0);
+        // 4 before, 6 now.
+        assert_eq!((halves.parts, halves.noise()), (2, Some(1.0 / 5.0)));
+    }
+
+    #[test]
+    fn a_pass_that_was_begun_is_ended_after_resuming() {
+        let pass = |first| Pass {
+            set: 0,
+            points: 8,
+            part: first..8,
+        };
+        let mut state = State::new([1, 2]);
+        assert_eq!(state.begin(|_| Some(pass(4))), Some(pass(4)));
+        let row = Row {
+            mean: vec![[1.0; 3]],
+            paths: 4,
+            rejected: 0,
+        };
+        state.add(1, row);
+        let saved = serde_json::to_string(&state).unwrap();
+        let mut resumed: State = serde_json::from_str(&saved).unwrap();
+        assert!(resumed.is_of([1, 2]) && !resumed.is_of([2, 1]) && resumed.has(1));
+        assert_eq!(resumed.begin(|_| panic!("one is open")), Some(pass(4)));
+        resumed.complete(4);
+        assert_eq!(resumed.begin(|_| None), None);
+        for damage in [
+            Pass {
+                points: 0,
+                ..pass(4)
+            },
+            Pass {
+                part: std::ops::Range { start: 9, end: 8 },
+                ..pass(4)
+            },
+        ] {
+            resumed.pass = Some(damage);
+            assert!(!resumed.is_of([1, 2]));
+        }
     }
 }

@@ -8,7 +8,8 @@ use super::{PointSet, check, fill_singly};
 ///
 /// To go on with a sequence where an estimate of its first points ended: both together are an estimate of all of them. What a set promises
 /// of its first points it does not promise of others, so that these have neither [`size`](PointSet::size) nor
-/// [`radix`](PointSet::radix). Past the last index the points begin anew.
+/// [`radix`](PointSet::radix): of a finite set take no more than are left. The mean over both weighs them by their numbers, and
+/// they differ by more than the error of that mean. Past the last index the points begin anew.
 ///
 /// ```
 /// use estimand::points::{Halton, PointSet, Skipped};

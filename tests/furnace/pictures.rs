@@ -129,6 +129,15 @@ fn a_picture_of_points_keeps_what_was_before_the_refused_ones() {
             .iter()
             .all(|pixel| *pixel == DVec3::ZERO)
     );
+    let singly = view.render(size, 1, |seed| Average::new(points(seed).unwrap(), 3));
+    assert_eq!(whole, singly.unwrap());
+    // More than go together, and a finite set.
+    for count in [1500, 7] {
+        let points = |seed| Stratified::new(count, 2, seed);
+        let together = view.render_points(size, 1, count, points, |_| true);
+        let singly = view.render(size, 1, |seed| Average::new(points(seed).unwrap(), count));
+        assert_eq!(together.unwrap(), singly.unwrap());
+    }
     let rows = view
         .render_points(size, 1, 3, points, |row| row < 4)
         .unwrap();

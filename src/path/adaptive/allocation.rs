@@ -34,7 +34,7 @@ impl Allocation {
     }
 
     /// How many samples each pixel gets, row by row, `mean` in the mean, 1 if that is 0: in proportion to the standard deviation, which is
-    /// best for the mean square error of the whole picture with independent samples.
+    /// best for the mean square error of the whole picture with independent samples; the pilot, which is uncertain, tells its power of 3/4.
     pub fn counts(&self, mean: u64) -> Vec<u64> {
         let mean = mean.max(1) as f64;
         let [least, most] = [(LEAST * mean).ceil(), MOST * mean];

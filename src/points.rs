@@ -23,8 +23,8 @@
 //! # Adaptors
 //!
 //! [`Shifted`] randomises any set, [`Folded`] makes integrands periodic, [`Padded`] takes the first dimensions from one set
-//! and the rest from another, [`Skipped`] goes on where an estimate ended. The digits of nets are randomised by a scramble that is part of the set's type; one that
-//! is not made for a set does not compile:
+//! and the rest from another, [`Skipped`] goes on where an estimate ended. The digits of nets are randomised by a scramble
+//! that is part of the set's type; one that is not made for a set does not compile:
 //!
 //! | randomisation | for | what it is |
 //! |---|---|---|

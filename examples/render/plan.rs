@@ -23,6 +23,7 @@ pub(crate) struct Plan {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Passes {
+    /// These.
     Known(Vec<Pass>),
     /// Passes that double, until the time is over.
     Time(Duration),
@@ -70,20 +71,11 @@ impl Pass {
         at(self.part.start)..at(self.part.end)
     }
 
-    /// The two halves of the first set, of which the first has no more points than the second.
+    /// The two halves of the first set, of which the first has no more points than the second. They are told by the points of the first, so
+    /// that each pixel has as many in both, however many those are, if the number of all is even.
     fn halves(points: u64) -> [Self; 2] {
-        let middle = points / 2;
-        [0..middle, middle..points].map(|part| Self {
-            set: 0,
-            points,
-            part,
-        })
-    }
-
-    /// Two parts of the first set, each with as many points as the other in every pixel; without one of them if their number is odd.
-    fn equal_parts(points: u64) -> [Self; 2] {
         let half = points / 2;
-        [0..half, half..2 * half].map(|part| Self {
+        [0..half, half..points].map(|part| Self {
             set: 0,
             points: half,
             part,
@@ -146,15 +138,11 @@ impl Plan {
             let whole = |(set, points)| Pass::whole(set, points);
             (0..).zip(samples).map(whole).collect()
         } else {
-            // Where pixels have as many points as a pilot deals, both halves have the same number.
-            let halves = if arguments.adaptive {
-                Pass::equal_parts
-            } else {
-                Pass::halves
-            };
             match spp {
                 1 => vec![Pass::whole(0, spp)],
-                _ => halves(spp).into(),
+                // Where a pilot deals the points, pixels are to have as many in both halves.
+                _ if arguments.adaptive => Pass::halves(spp & !1).into(),
+                _ => Pass::halves(spp).into(),
             }
         };
         Ok(plan(Passes::Known(passes), pilot))
@@ -267,11 +255,11 @@ mod tests {
                         let before = before.find(|other| other.set == pass.set);
                         let end = before.map_or(0, |other| other.part.end);
                         assert_eq!(pass.part.start, end, "{points} {spp}");
-                        // The next set begins where all of this one are taken.
-                        let last = passes[number + 1..]
-                            .iter()
-                            .all(|other| other.set > pass.set);
-                        assert!(!last || pass.part.end == pass.points, "{points} {spp}");
+                        // Finite sets are not parted.
+                        assert!(
+                            points.go_on() || pass.part == (0..pass.points),
+                            "{points} {spp}"
+                        );
                     }
                 }
             }

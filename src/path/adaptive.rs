@@ -128,8 +128,8 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     }
 
     /// The picture with more samples where it varies more: `estimator` makes the estimator of a pixel from its seed and the
-    /// number of its samples, which are [`Allocation::counts`]. The pilot is of independent points. For nets take [`allocate`](Self::allocate) and [`Allocation::powers`]. See
-    /// [`Adaptive`].
+    /// number of its samples, which are [`Allocation::counts`]. The pilot is of independent points. For nets take
+    /// [`allocate`](Self::allocate) and [`Allocation::powers`]. See [`Adaptive`].
     ///
     /// # Errors
     ///
@@ -177,7 +177,7 @@ mod tests {
         let adaptive = Adaptive::new(32, 8).unwrap();
         let plain = |key, count| MonteCarlo::new(count, key);
         let adapted = view.render_adaptive([32, 32], 1, adaptive, plain).unwrap();
-        // Two ninths of eight, rounded up, are two.
+        // The pilot took 16 samples in each of 121 squares: 1.9 a pixel.
         assert_eq!(adapted.samples.iter().sum::<u64>(), 32 * 32 * 30);
         assert_eq!(adapted.image.used(), 32 * 32 * 30);
         assert!(adapted.samples.iter().all(|&count| count >= 3));

@@ -156,8 +156,9 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         let (mut samplers, mut pixels) = (Vec::new(), Vec::new());
         let mut left = &ahead[..];
         for share in shares {
+            let width = width(share) as usize;
             for index in 0..few(share) {
-                let (row, others) = left.split_at(width(share) as usize);
+                let (row, others) = left.split_at(width);
                 left = others;
                 samplers.push(Cursor::with_prefix(&share.points, index as u64, row));
                 pixels.push(share.position);

@@ -33,7 +33,7 @@ fn grid(size: [u32; 2]) -> [u32; 2] {
 
 impl Pilot {
     /// Takes the means over two sets of `count` points each, made by `points` from seeds: what they differ by is the error of such a
-    /// set. `None` if `proceed` is false before any row.
+    /// set. `None` if `proceed` returns `false`, which ends it.
     pub(super) fn new<P, B, L, E, C, F>(
         view: &View<B, L, E, C, F>,
         size: [u32; 2],
@@ -130,7 +130,7 @@ impl Pilot {
         let mut around: Vec<f64> = near.iter().map(|square| square.sqrt()).collect();
         blur(&mut near, columns, NEAR);
         blur(&mut around, columns, AROUND);
-        let squares: Vec<f64> = near
+        let deviations: Vec<f64> = near
             .iter()
             .zip(&around)
             .map(|(near, around)| (near.sqrt() * around).sqrt().powf(DAMPING))
@@ -139,7 +139,7 @@ impl Pilot {
         let side = SIDE as usize;
         (0..height)
             .flat_map(|y| {
-                let row = &squares[y / side * columns..][..columns];
+                let row = &deviations[y / side * columns..][..columns];
                 (0..width).map(|x| row[x / side])
             })
             .collect()
@@ -157,6 +157,7 @@ fn within(square: [u32; 2], size: [u32; 2], seed: u64) -> [u32; 2] {
     })
 }
 
+/// The power of the deviations that is given for them.
 const DAMPING: f64 = 0.75;
 
 /// How often the mean is taken, near and around: standard deviations of 1.2 and 3.5 squares.

@@ -50,7 +50,7 @@ pub use film::{Crop, Film, Filter};
 pub use integrator::{Integrator, Techniques};
 pub use load::{Instance, Loaded};
 pub use mesh::{Attribute, Mesh};
-pub use picture::{Picture, PointsOfPixel};
+pub use picture::Picture;
 pub use sampler::{Points, Sampler};
 pub use scene::Description;
 pub use sensor::{Projection, Sensor};

@@ -13,9 +13,9 @@ use estimand::path::bsdf::{Bsdf, Lambertian};
 use estimand::path::light::{AreaLights, Environment, Light, NoEnvironment};
 use estimand::path::scenes::{self, CORNELL_LIGHT};
 use estimand::path::sensor::{Pinhole, Sensor};
-use estimand::path::{Adaptive, Direct, Ending, Image, Recursive, View};
+use estimand::path::{Adaptive, Allocation, Direct, Ending, Image, Recursive, View};
 use estimand::points::{
-    Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Rescrambled, Sobol, Stratified,
+    Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Rescrambled, Skipped, Sobol, Stratified,
 };
 use estimand::{Average, Estimator, MonteCarlo};
 
@@ -163,18 +163,25 @@ fn adaptive_samples() {
         .check();
 }
 
-/// Nets whose number a pilot decides. Few points again.
+/// Nets whose number the first points decide, as above.
 #[test]
 fn adaptive_nets() {
     let (view, size) = (scenes::cornell_box(), [128; 2]);
     let ours = Batches::new(32, 12, |batch| {
-        let points = |key| Rescrambled::new(4, key);
-        let pilot = view.allocate(size, hash(20, batch), 2, points).unwrap();
-        let counts = pilot.powers(8, 2);
-        Image::of_pixels(size, hash(21, batch), |[x, y], key| {
+        let seed = hash(20, batch);
+        let part = |skip| {
+            let points = |key| Ok(Skipped::new(Rescrambled::new(4, key)?, skip));
+            view.render_points(size, seed, 1, points, |_| true).unwrap()
+        };
+        let [one, other] = [part(0), part(1)];
+        let differences = one.pixels().iter().zip(other.pixels());
+        let errors = differences.map(|(a, b)| (*a - *b).abs()).collect();
+        let first = one.with_std_error(Image::new(128, errors).unwrap());
+        let counts = Allocation::new(&first.unwrap(), 2).unwrap().powers(8, 2);
+        // These points are the first of each pixel.
+        Image::of_pixels(size, seed, |[x, y], key| {
             let count = counts[(y * size[0] + x) as usize];
-            let points: Box<dyn PointSet> = Box::new(Rescrambled::new(4, key)?);
-            Average::new(points, count).estimate(&view.pixel([x, y], size))
+            Average::new(Rescrambled::new(4, key)?, count).estimate(&view.pixel([x, y], size))
         })
         .unwrap()
     });

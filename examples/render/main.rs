@@ -68,9 +68,8 @@ struct Arguments {
     /// A picture to compare with
     #[arg(long, value_name = "FILE.exr")]
     reference: Option<PathBuf>,
-    /// Takes more samples where the picture varies more, as a pilot shows that is no part of it: two sets of points in one pixel of nine. They have
-    /// 16 points with --time and --noise, otherwise an eighth of the samples of a pixel, but a power of two, 64 at most. An odd sample may be
-    /// left out, and small pictures have more pixels than one of nine in the pilot
+    /// Takes more samples where the picture varies more, as the first ones of the pixels around show: 16 in every pixel with --time and --noise,
+    /// otherwise an eighth of all, but a power of two from 2 to 64
     #[arg(long)]
     adaptive: bool,
     /// Ends paths by Russian roulette as a pilot of so many paths a pixel, in at most 128 x 128 pixels and twice over, shows that it pays

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-use estimand::path::{Allocation, Image};
+use estimand::path::Image;
 use serde_json::json;
 
 use crate::Arguments;
@@ -25,8 +25,6 @@ pub(crate) struct Report<'a> {
 pub(crate) struct Work {
     pub(crate) image: Image,
     pub(crate) paths: u64,
-    /// How many of them only told how the others were to be dealt.
-    pub(crate) pilot: u64,
     /// How many of the paths were not finite and are left out.
     pub(crate) rejected: u64,
     pub(crate) seconds: f64,
@@ -39,7 +37,6 @@ impl Work {
         Ok(Self {
             image: state.image()?,
             paths: state.paths,
-            pilot: state.allocation.as_ref().map_or(0, Allocation::used),
             rejected: state.rejected,
             seconds: state.seconds,
             noise: state.noise(),
@@ -118,7 +115,6 @@ fn figures(
         "width": job.size[0],
         "height": job.size[1],
         "spp": work.paths as f64 / pixels,
-        "pilot_spp": work.pilot as f64 / pixels,
         "paths": work.paths,
         "seconds": work.seconds,
         "load_seconds": report.load_seconds,

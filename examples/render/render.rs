@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use estimand::mitsuba::Picture;
-use estimand::path::Share;
+use estimand::path::{Allocation, Share};
 use estimand::points::PointSet;
 use estimand::{each, hash};
 
@@ -26,9 +26,6 @@ const SAVE_RATIO: u32 = 20;
 /// How many paths of neighbouring pixels are asked for at once, about: many, since lanes are idle at their end, but few enough for
 /// Ctrl-C not to wait.
 const ASKED: u64 = 4096;
-
-/// Tells the seed of the pilot from that of the picture.
-const DEALING: u64 = 0x6465_616c;
 
 /// A picture to be rendered.
 pub(crate) struct Job<'a> {
@@ -74,23 +71,12 @@ impl Job<'_> {
     fn passes(&self, state: &Mutex<State>) -> Result<(), String> {
         let before = lock(state).seconds;
         let start = Instant::now();
-        // How the points of sets of so many are dealt.
-        let mut dealt: Option<(u64, Counts)> = None;
         while !self.stop.load(Ordering::Relaxed) {
             let Some(pass) = lock(state).begin(|state| self.next(state)) else {
                 return Ok(());
             };
-            let done = self.look(state)?;
-            lock(state).seconds = before + start.elapsed().as_secs_f64();
-            if !done {
-                break;
-            }
-            let counts = match dealt {
-                Some((points, counts)) if points == pass.points => counts,
-                _ => self.counts(state, pass.points)?,
-            };
+            let counts = self.counts(&mut lock(state), &pass)?;
             let rows = each(self.size[1].into(), |y| self.row(y, &pass, &counts, state));
-            dealt = Some((pass.points, counts));
             lock(state).seconds = before + start.elapsed().as_secs_f64();
             if rows
                 .into_iter()
@@ -98,58 +84,40 @@ impl Job<'_> {
                 .into_iter()
                 .all(|done| done)
             {
-                let mut state = lock(state);
-                if self.plan.is_half(&pass, state.samples) {
-                    state.forget_parts();
-                }
-                state.complete(pass.samples());
+                lock(state).complete(pass.count(), self.plan.tells_by_halves());
             }
         }
         Ok(())
     }
 
-    /// Has a pilot tell how samples are dealt to the pixels, if the plan has one and it has not told before. Says whether it is done: somebody
-    /// may stop it. It is an error if the time is over before.
-    fn look(&self, state: &Mutex<State>) -> Result<bool, String> {
-        let count = self.plan.pilot;
-        if count == 0 || lock(state).allocation.is_some() {
-            return Ok(true);
+    /// How many samples the pixels are to have after a pass: if they are dealt, as the first ones tell.
+    fn counts(&self, state: &mut State, pass: &Pass) -> Result<Counts, String> {
+        let mean = pass.samples.end;
+        let Some(first) = self.plan.first.filter(|&first| state.samples >= first) else {
+            return Ok(Counts::Same(mean));
+        };
+        if state.allocation.is_none() {
+            let allocation = (state.image()).and_then(|image| Allocation::new(&image, first));
+            state.allocation = Some(allocation.map_err(|e| e.to_string())?);
         }
-        let start = Instant::now();
-        let seed = hash::hash(self.seed, DEALING);
-        let points = |key| self.points.of_pixel([0, 0], key, count);
-        let proceed = || !self.stop.load(Ordering::Relaxed) && self.plan.has_time(start.elapsed());
-        let allocation = (self.picture)
-            .allocate_while(self.size, seed, count, &points, &proceed)
-            .map_err(|e| e.to_string())?;
-        let done = allocation.is_some();
-        lock(state).look(allocation, start.elapsed());
-        match done || self.stop.load(Ordering::Relaxed) {
-            true => Ok(done),
-            false => Err("the time is too short for the pilot of --adaptive".to_owned()),
-        }
-    }
-
-    /// How many points the set of each pixel has, if it is so many in the mean.
-    fn counts(&self, state: &Mutex<State>, samples: u64) -> Result<Counts, String> {
-        let some = self.points.of_pixel([0, 0], self.seed, samples);
-        let radix = some.map_err(|e| e.to_string())?.radix();
-        Ok(match (&lock(state).allocation, radix) {
-            (None, _) => Counts::Same(samples),
-            (Some(allocation), Some(radix)) => Counts::Each(allocation.powers(samples, radix)),
-            (Some(allocation), None) => Counts::Each(allocation.counts(samples)),
-        })
+        let some = self.points.of_pixel([0, 0], self.seed, mean);
+        // Sets of their own have any numbers: only all of them together have those that are dealt.
+        let radix = some
+            .map_err(|e| e.to_string())?
+            .radix()
+            .filter(|_| self.plan.goes_on);
+        let allocation = state.allocation.iter();
+        let counts = allocation.flat_map(|allocation| match radix {
+            Some(radix) => allocation.powers(mean, radix),
+            None => allocation.counts(mean),
+        });
+        Ok(Counts::Each(counts.collect()))
     }
 
     /// The next pass.
     fn next(&self, state: &State) -> Option<Pass> {
-        let rendering = state.seconds - state.pilot_seconds;
-        self.plan.next(
-            state.passes,
-            state.samples,
-            [state.seconds, rendering],
-            state.noise(),
-        )
+        self.plan
+            .next(state.passes, state.samples, state.seconds, state.noise())
     }
 
     /// Renders a row of a pass, unless it is there or somebody stops it. Says whether it is there.
@@ -165,24 +133,44 @@ impl Job<'_> {
             return Ok(true);
         }
         let y = u32::try_from(y).map_err(|e| e.to_string())?;
-        let seed = hash::hash(self.seed, pass.set);
-        let mut row = Row::default();
+        // One set for all passes, or one for each.
+        let set = match self.plan.goes_on {
+            true => 0,
+            false => pass.number,
+        };
+        let seed = hash::hash(self.seed, set);
+        let width = self.size[0] as usize;
+        let before: Vec<_> = {
+            let state = lock(state);
+            let columns = 0..self.size[0];
+            columns.map(|x| state.samples_of([x, y])).collect()
+        };
+        let mut row = Row {
+            mean: vec![[0.0; 3]; width],
+            samples: vec![0; width],
+            ..Row::default()
+        };
         let mut x = 0;
-        while x < self.size[0] {
+        while x < width {
             if self.stop.load(Ordering::Relaxed) {
                 return Ok(false);
             }
             let mut some = Vec::new();
             let mut paths = 0;
-            while x < self.size[0] && paths < ASKED {
-                let position = [x, y];
-                let count = counts.of(position, self.size);
-                let part = pass.of(count);
-                let samples = part.end - part.start;
-                let points = self.points.of_part(position, seed, count, part);
-                let points = points.map_err(|e| e.to_string())?;
-                some.push((position, points, samples));
-                paths = paths.saturating_add(samples);
+            while x < width && paths < ASKED {
+                let count = counts.of(at * width + x).saturating_sub(before[x]);
+                if count > 0 {
+                    #[expect(clippy::cast_possible_truncation, reason = "the width is a u32")]
+                    let position = [x as u32, y];
+                    let part = match self.plan.goes_on {
+                        true => before[x]..before[x] + count,
+                        false => 0..count,
+                    };
+                    let points = self.points.of_part(position, seed, count, part);
+                    some.push((position, points.map_err(|e| e.to_string())?, count));
+                    row.samples[x] = count;
+                }
+                paths = paths.saturating_add(count);
                 x += 1;
             }
             let shares: Vec<_> = (some.iter())
@@ -195,7 +183,7 @@ impl Job<'_> {
             let outcomes = self.picture.averages(self.size, &shares);
             for (outcome, [x, y]) in outcomes.into_iter().zip(some.iter().map(|some| some.0)) {
                 let estimate = outcome.map_err(|e| format!("pixel ({x}, {y}): {e}"))?;
-                row.mean.push(estimate.mean.to_array());
+                row.mean[x as usize] = estimate.mean.to_array();
                 row.paths += estimate.used;
                 row.rejected += estimate.rejected;
             }
@@ -216,7 +204,7 @@ impl Job<'_> {
             {
                 let state = lock(state);
                 let next = state.pass.clone().or_else(|| self.next(&state));
-                let next = next.map_or(0, |pass| pass.samples());
+                let next = next.map_or(0, |pass| pass.count());
                 let done = state.samples as f64 + state.part() * next as f64;
                 let fraction = self.plan.fraction(done, seconds, state.noise());
                 progress.show(fraction, state.paths, seconds, state.noise());
@@ -255,7 +243,7 @@ impl Job<'_> {
     }
 }
 
-/// How many samples the pixels get in a pass.
+/// How many samples the pixels are to have after a pass.
 enum Counts {
     Same(u64),
     /// Row by row.
@@ -263,10 +251,10 @@ enum Counts {
 }
 
 impl Counts {
-    fn of(&self, [x, y]: [u32; 2], [width, _]: [u32; 2]) -> u64 {
+    fn of(&self, pixel: usize) -> u64 {
         match self {
             Self::Same(count) => *count,
-            Self::Each(counts) => counts[y as usize * width as usize + x as usize],
+            Self::Each(counts) => counts[pixel],
         }
     }
 }

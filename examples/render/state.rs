@@ -1,7 +1,5 @@
 //! What has been rendered so far.
 
-use std::time::Duration;
-
 use estimand::Error;
 use estimand::path::{Allocation, Image};
 use glam::DVec3;
@@ -13,34 +11,71 @@ use crate::plan::Pass;
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct State {
     width: usize,
-    /// How many passes are complete, and how many samples a pixel has in them.
+    /// How many passes are complete, and how many samples a pixel has in them, in the mean.
     pub(crate) passes: u64,
     pub(crate) samples: u64,
-    /// Of all pixels: the mean over the passes, weighted by their samples.
-    mean: Vec<[f64; 3]>,
-    /// Of all pixels: the sum of squared deviations of some parts from it, weighted alike, and of how many parts.
-    deviation: Vec<[f64; 3]>,
-    parts: u64,
+    pixels: Vec<Pixel>,
     /// The pass that is not complete, and its rows.
     pub(crate) pass: Option<Pass>,
     rows: Vec<Option<Row>>,
-    /// How samples are dealt to the pixels, once a pilot has told.
+    /// How samples are dealt to the pixels, once the first ones have told.
     pub(crate) allocation: Option<Allocation>,
-    /// Evaluations of all that is here and of the pilot.
+    /// Evaluations of all that is here.
     pub(crate) paths: u64,
     /// How many values of the picture were not finite.
     pub(crate) rejected: u64,
-    /// The time that it took, and how much of it the pilot.
+    /// The time that it took.
     pub(crate) seconds: f64,
-    pub(crate) pilot_seconds: f64,
+}
+
+/// A pixel after some passes.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+struct Pixel {
+    samples: u64,
+    /// The mean over them.
+    mean: [f64; 3],
+    /// The sum of squared deviations of some parts from it, weighted by their samples, and of how many parts.
+    deviation: [f64; 3],
+    parts: u64,
 }
 
 /// A row of a pass.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct Row {
     pub(crate) mean: Vec<[f64; 3]>,
+    /// How many samples the pixels have in it.
+    pub(crate) samples: Vec<u64>,
     pub(crate) paths: u64,
     pub(crate) rejected: u64,
+}
+
+impl Pixel {
+    /// With some more samples. Where they are as many as those before and tell `by_halves`, the parts of those before are forgotten: they
+    /// were too small to tell of it.
+    fn add(&mut self, samples: u64, value: [f64; 3], by_halves: bool) {
+        if samples == 0 {
+            return;
+        }
+        if by_halves && samples >= self.samples {
+            self.deviation = [0.0; 3];
+            self.parts = self.parts.min(1);
+        }
+        self.samples += samples;
+        self.parts += 1;
+        let weight = samples as f64;
+        let share = weight / self.samples as f64;
+        for (channel, value) in value.into_iter().enumerate() {
+            let off = value - self.mean[channel];
+            self.mean[channel] += off * share;
+            self.deviation[channel] += weight * off * (value - self.mean[channel]);
+        }
+    }
+
+    /// The squares of the standard errors; `None` before there are two parts.
+    fn squared_errors(&self) -> Option<[f64; 3]> {
+        let divisor = (self.parts > 1).then(|| (self.parts - 1) as f64 * self.samples as f64)?;
+        Some(self.deviation.map(|sum| sum / divisor))
+    }
 }
 
 impl State {
@@ -50,36 +85,30 @@ impl State {
             width,
             passes: 0,
             samples: 0,
-            mean: vec![[0.0; 3]; width * height],
-            deviation: vec![[0.0; 3]; width * height],
-            parts: 0,
+            pixels: vec![Pixel::default(); width * height],
             pass: None,
             rows: vec![None; height],
             allocation: None,
             paths: 0,
             rejected: 0,
             seconds: 0.0,
-            pilot_seconds: 0.0,
         }
     }
 
     /// Whether it is of a picture of that size, and all there.
     pub(crate) fn is_of(&self, [width, height]: [u32; 2]) -> bool {
         let [width, height] = [width as usize, height as usize];
-        let pixels = width * height;
-        let rows = self.rows.iter().flatten();
+        let of_width = |row: &Row| [row.mean.len(), row.samples.len()] == [width; 2];
         self.width == width
             && self.rows.len() == height
-            && [self.mean.len(), self.deviation.len()] == [pixels; 2]
-            && rows.map(|row| row.mean.len()).all(|pixels| pixels == width)
+            && self.pixels.len() == width * height
+            && self.rows.iter().flatten().all(of_width)
             && self.pass.as_ref().is_none_or(Pass::is_sound)
     }
 
-    /// Keeps what a pilot says, if it was not stopped.
-    pub(crate) fn look(&mut self, says: Option<Allocation>, took: Duration) {
-        self.paths += says.as_ref().map_or(0, Allocation::used);
-        self.allocation = says;
-        self.pilot_seconds += took.as_secs_f64();
+    /// How many samples a pixel has.
+    pub(crate) fn samples_of(&self, [x, y]: [u32; 2]) -> u64 {
+        self.pixels[y as usize * self.width + x as usize].samples
     }
 
     /// The pass that was begun, or the next one, which is begun then.
@@ -105,50 +134,36 @@ impl State {
         self.rows[at] = Some(row);
     }
 
-    /// Takes what is there as one part, whose own parts are forgotten: they were too small to tell of it.
-    pub(crate) fn forget_parts(&mut self) {
-        self.deviation.fill([0.0; 3]);
-        self.parts = self.parts.min(1);
-    }
-
-    /// Merges the rows of a complete pass of so many samples into the picture.
-    pub(crate) fn complete(&mut self, samples: u64) {
+    /// Merges the rows of a complete pass of so many samples in the mean into the picture.
+    pub(crate) fn complete(&mut self, samples: u64, by_halves: bool) {
         self.pass = None;
         self.passes += 1;
-        self.parts += 1;
         self.samples += samples;
-        let weight = samples as f64;
-        let share = weight / self.samples as f64;
         let rows = self.rows.iter_mut().map(Option::take);
-        let values = rows.flat_map(|row| row.unwrap_or_default().mean);
-        for ((mean, deviation), value) in self.mean.iter_mut().zip(&mut self.deviation).zip(values)
-        {
-            for channel in 0..3 {
-                let off = value[channel] - mean[channel];
-                mean[channel] += off * share;
-                deviation[channel] += weight * off * (value[channel] - mean[channel]);
+        for (row, pixels) in rows.zip(self.pixels.chunks_mut(self.width)) {
+            let row = row.unwrap_or_default();
+            for ((pixel, samples), value) in pixels.iter_mut().zip(row.samples).zip(row.mean) {
+                pixel.add(samples, value, by_halves);
             }
         }
     }
 
-    /// The root-mean-square error of the pixels over the mean, as estimated; `None` before there are two parts.
+    /// The root-mean-square error of the pixels over the mean, as estimated; `None` before all have two parts.
     pub(crate) fn noise(&self) -> Option<f64> {
-        let divisor = self.divisor()?;
-        let squares: f64 = self.deviation.as_flattened().iter().sum();
-        let sum: f64 = self.mean.as_flattened().iter().sum();
-        let count = (3 * self.mean.len()) as f64;
-        let noise = (squares / divisor / count).sqrt() / (sum / count).abs();
+        let (mut squares, mut sum) = (0.0, 0.0);
+        for pixel in &self.pixels {
+            squares += pixel.squared_errors()?.iter().sum::<f64>();
+            sum += pixel.mean.iter().sum::<f64>();
+        }
+        let count = (3 * self.pixels.len()) as f64;
+        let noise = (squares / count).sqrt() / (sum / count).abs();
         noise.is_finite().then_some(noise)
-    }
-
-    /// What deviations are divided by to be squared standard errors.
-    fn divisor(&self) -> Option<f64> {
-        (self.parts > 1).then(|| (self.parts - 1) as f64 * self.samples as f64)
     }
 
     /// The picture: of complete passes, or of the rows of the first one, black elsewhere.
     pub(crate) fn image(&self) -> Result<Image, Error> {
-        let mut pixels: Vec<DVec3> = self.mean.iter().copied().map(DVec3::from).collect();
+        let pixels = self.pixels.iter().map(|pixel| DVec3::from(pixel.mean));
+        let mut pixels: Vec<_> = pixels.collect();
         if self.passes == 0 {
             for (row, pixels) in self.rows.iter().zip(pixels.chunks_mut(self.width)) {
                 let values = row.iter().flat_map(|row| &row.mean);
@@ -158,12 +173,12 @@ impl State {
             }
         }
         let image = Image::new(self.width, pixels)?;
-        let Some(divisor) = self.divisor() else {
-            return Ok(image);
-        };
-        let error = |deviation: &[f64; 3]| DVec3::from(deviation.map(|sum| (sum / divisor).sqrt()));
-        let errors = self.deviation.iter().map(error).collect();
-        image.with_std_error(Image::new(self.width, errors)?)
+        let root = |squares: [f64; 3]| DVec3::from(squares.map(f64::sqrt));
+        let errors = self.pixels.iter().map(Pixel::squared_errors);
+        match errors.map(|squares| squares.map(root)).collect() {
+            Some(errors) => image.with_std_error(Image::new(self.width, errors)?),
+            None => Ok(image),
+        }
     }
 }
 
@@ -172,43 +187,56 @@ mod tests {
     use super::*;
 
     /// With a pass of a row of one pixel.
-    fn after(state: &mut State, samples: u64, value: f64) {
+    fn after(state: &mut State, samples: u64, value: f64, by_halves: bool) {
         let row = Row {
             mean: vec![[value; 3]],
+            samples: vec![samples],
             ..Row::default()
         };
         state.add(0, row);
-        state.complete(samples);
+        state.complete(samples, by_halves);
+    }
+
+    fn parts(state: &State) -> u64 {
+        state.pixels[0].parts
     }
 
     #[test]
     fn two_halves_tell_of_the_noise() {
         let mut state = State::new([1, 1]);
         for (samples, value) in [(1, 9.0), (1, 1.0), (2, 3.0)] {
-            after(&mut state, samples, value);
+            after(&mut state, samples, value, false);
             assert_eq!(state.noise().is_some(), state.samples > 1);
         }
         // 5 in the mean of the first two, 3 of the other two.
-        assert_eq!((state.passes, state.samples, state.parts), (3, 4, 3));
+        assert_eq!((state.passes, state.samples, parts(&state)), (3, 4, 3));
+        assert_eq!(state.samples_of([0, 0]), 4);
         let mut halves = state.clone();
-        halves.forget_parts();
-        assert_eq!(halves.noise(), None);
-        after(&mut halves, 4, 6.0);
+        after(&mut halves, 4, 6.0, true);
         // 4 before, 6 now.
-        assert_eq!((halves.parts, halves.noise()), (2, Some(1.0 / 5.0)));
+        assert_eq!((parts(&halves), halves.noise()), (2, Some(1.0 / 5.0)));
+        // Fewer are a part more, none are none.
+        after(&mut halves, 2, 5.0, true);
+        assert_eq!(parts(&halves), 3);
+        after(&mut halves, 0, 0.0, true);
+        assert_eq!((parts(&halves), halves.samples_of([0, 0])), (3, 10));
+        assert_eq!(halves.image().unwrap().pixels()[0], DVec3::splat(5.0));
+        // Parts of 4, 4 and 2 with the values 4, 6 and 5: 8 over 2 times 10.
+        let error = halves.image().unwrap().std_error().unwrap().pixels()[0];
+        assert!((error - DVec3::splat(0.4_f64.sqrt())).length() < 1e-15);
     }
 
     #[test]
     fn a_pass_that_was_begun_is_ended_after_resuming() {
         let pass = |first| Pass {
-            set: 0,
-            points: 8,
-            part: first..8,
+            number: 1,
+            samples: first..8,
         };
         let mut state = State::new([1, 2]);
         assert_eq!(state.begin(|_| Some(pass(4))), Some(pass(4)));
         let row = Row {
             mean: vec![[1.0; 3]],
+            samples: vec![4],
             paths: 4,
             rejected: 0,
         };
@@ -217,20 +245,12 @@ mod tests {
         let mut resumed: State = serde_json::from_str(&saved).unwrap();
         assert!(resumed.is_of([1, 2]) && !resumed.is_of([2, 1]) && resumed.has(1));
         assert_eq!(resumed.begin(|_| panic!("one is open")), Some(pass(4)));
-        resumed.complete(4);
+        resumed.complete(4, false);
         assert_eq!(resumed.begin(|_| None), None);
-        for damage in [
-            Pass {
-                points: 0,
-                ..pass(4)
-            },
-            Pass {
-                part: std::ops::Range { start: 9, end: 8 },
-                ..pass(4)
-            },
-        ] {
-            resumed.pass = Some(damage);
-            assert!(!resumed.is_of([1, 2]));
-        }
+        resumed.pass = Some(pass(9));
+        assert!(!resumed.is_of([1, 2]));
+        resumed.pass = None;
+        resumed.rows[0] = Some(Row::default());
+        assert!(!resumed.is_of([1, 2]));
     }
 }

@@ -286,9 +286,8 @@ fn adaptive(report: &mut Report, reference: &Image, limits: &Limits) -> Result<(
         .page
         .subsection("Adaptive against uniform")
         .text(
-            "64 independent samples a pixel in the mean: the same for all pixels, or dealt to them as twice eight in one pixel of nine say, 2 of the 64 in the \
-             mean. Those are no part of the picture: no sample has a say in its own number, so that there is no bias. Section 3 measures \
-             what there is.",
+            "64 independent samples a pixel in the mean: the same for all pixels, or eight for all, and the others dealt as those of the pixels around say. \
+             No sample has a say in the number of its own pixel, so that there is no bias. Section 3 measures what there is.",
         )
         .pictures(&pictures)
         .files(["uniform.exr", "adaptive.exr", "adaptive_samples.csv"]);

@@ -10,12 +10,9 @@ use crate::path::filter::Filter;
 use crate::path::light::{Environment, Light};
 use crate::path::roulette::Steps;
 use crate::path::sensor::Sensor;
-use crate::path::{Allocation, Share, Unfinished, View};
+use crate::path::{Share, View};
 use crate::points::PointSet;
 use crate::{Average, Error, Estimate, Estimator, Incomplete, NonFinite, Sampler};
-
-/// What makes the points of a pixel from its seed.
-pub type PointsOfPixel<'a> = dyn Fn(u64) -> Result<Box<dyn PointSet>, Error> + Sync + 'a;
 
 /// A [`View`] of any types, behind a pointer.
 pub trait Picture: Sync + fmt::Debug {
@@ -43,20 +40,6 @@ pub trait Picture: Sync + fmt::Debug {
         size: [u32; 2],
         shares: &[Share<&dyn PointSet>],
     ) -> Vec<Result<Estimate<DVec3>, Incomplete<DVec3>>>;
-
-    /// How samples are to be dealt to the pixels, as a pilot shows: see [`View::allocate_while`].
-    ///
-    /// # Errors
-    ///
-    /// [`Unfinished`] as there.
-    fn allocate_while(
-        &self,
-        size: [u32; 2],
-        seed: u64,
-        count: u64,
-        points: &PointsOfPixel<'_>,
-        proceed: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Option<Allocation>, Unfinished>;
 
     /// Ends paths by Russian roulette as it pays in this picture: see [`View::learn_roulette`].
     ///
@@ -101,17 +84,6 @@ where
         shares: &[Share<&dyn PointSet>],
     ) -> Vec<Result<Estimate<DVec3>, Incomplete<DVec3>>> {
         self.averages(size, shares, NonFinite::Reject)
-    }
-
-    fn allocate_while(
-        &self,
-        size: [u32; 2],
-        seed: u64,
-        count: u64,
-        points: &PointsOfPixel<'_>,
-        proceed: &(dyn Fn() -> bool + Sync),
-    ) -> Result<Option<Allocation>, Unfinished> {
-        self.allocate_while(size, seed, count, points, proceed)
     }
 
     fn learn_roulette(&mut self, size: [u32; 2], count: u64, seed: u64) -> Result<(), Error> {

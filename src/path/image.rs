@@ -160,6 +160,41 @@ impl Image {
         squares
     }
 
+    /// The mean of this picture and one of other samples, as large, with the weights of both in each pixel. If both have standard errors, so
+    /// has it.
+    pub(in crate::path) fn joined(self, other: &Self, weights: impl Fn(usize) -> [f64; 2]) -> Self {
+        let parts = |pixel: usize| {
+            let [a, b] = weights(pixel);
+            [a / (a + b), b / (a + b)]
+        };
+        let pixels = self.mean.iter().zip(&other.mean).enumerate();
+        let mean = pixels.map(|(pixel, (here, there))| {
+            let [a, b] = parts(pixel);
+            *here * a + *there * b
+        });
+        let errors = self.std_error.as_ref().zip(other.std_error.as_ref());
+        let std_error = errors.map(|(here, there)| {
+            let pixels = here.iter().zip(there).enumerate();
+            let joined = pixels.map(|(pixel, (here, there))| {
+                let [a, b] = parts(pixel);
+                let (here, there) = (*here * a, *there * b);
+                (here * here + there * there).map(f64::sqrt)
+            });
+            joined.collect()
+        });
+        let (these, those) = (self.evaluations, other.evaluations);
+        Self {
+            width: self.width,
+            mean: mean.collect(),
+            std_error,
+            evaluations: Evaluations {
+                requested: these.requested + those.requested,
+                used: these.used + those.used,
+                rejected: these.rejected + those.rejected,
+            },
+        }
+    }
+
     fn same_size(&self, other: &Self) -> Result<(), Error> {
         if self.width == other.width && self.mean.len() == other.mean.len() {
             return Ok(());

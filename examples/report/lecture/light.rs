@@ -405,7 +405,7 @@ fn adaptive(studio: &Studio<'_>) -> Result<Vec<Claim>, Failure> {
         Claim {
             claim: "Adaptive sampling has no bias if no sample has a say in its own number, and is too dark if the samples that decide count themselves.".into(),
             measured: format!(
-                "the mean of the picture is off by {} (uniform), {} (pilot and production apart), {} (eight samples of a pixel decide how many it gets, and are among them)",
+                "the mean of the picture is off by {} (uniform), {} (the first samples of the pixels around decide), {} (eight samples of a pixel decide how many it gets, and are among them)",
                 uniform.bias.percent(),
                 adapted.bias.percent(),
                 own.bias.percent()

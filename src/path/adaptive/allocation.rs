@@ -1,68 +1,100 @@
 //! How many samples each pixel of a picture gets.
 
-/// How samples are to be dealt to the pixels of a picture, as a pilot has shown: more where values spread more.
+use super::chessboard::{self, COLOURS, colour};
+use crate::Error;
+use crate::path::Image;
+
+/// How samples are to be dealt to the pixels of a picture, as its first ones show: more where values spread more.
 ///
-/// No pixel gets less than an eighth of the mean, since a pilot of few samples may have missed what is rare, none more than 64 times the mean,
-/// since it may have met it, and none nothing.
+/// A pixel that decides by its own samples whether it needs more of them stops where they happen to agree, and is too
+/// dark on average where bright paths are rare.[^kirk] So the pixels are those of a chessboard, and each colour is dealt its half of all samples
+/// by what the errors of the other colour's first samples are: no sample has a say in the number of its own pixel, nor in any of its colour, and the
+/// picture has no bias. It is the mean of all samples of a pixel, the first ones and those that are added.
+///
+/// No pixel gets more than 64 times the mean, since the first samples may have met what is rare.
+///
+/// ```
+/// use estimand::path::{Allocation, Image, scenes};
+/// use estimand::points::Rescrambled;
+/// use estimand::{Average, Estimator, Replicated};
+///
+/// let (view, size) = (scenes::cornell_box(), [16, 16]);
+/// // Two sets of four points tell of the errors.
+/// let points = Rescrambled::new(4, 1)?;
+/// let first = view.render(size, 1, |key| {
+///     Replicated::new(2, 4, move |seed| points.reseeded(seed)).seed(key)
+/// })?;
+/// let counts = Allocation::new(&first, 8)?.powers(64, 2);
+/// // Rendered anew; it would do to go on.
+/// let picture = Image::of_pixels(size, 2, |[x, y], key| {
+///     let count = counts[(y * size[0] + x) as usize];
+///     Average::new(points.reseeded(key), count).estimate(&view.pixel([x, y], size))
+/// })?;
+/// assert_eq!(picture.used(), counts.iter().sum::<u64>());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// [^kirk]: Kirk, David; Arvo, James (1991). *Unbiased Sampling Techniques for Image Synthesis*.
+///     <https://doi.org/10.1145/122718.122735>
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[must_use]
 pub struct Allocation {
-    /// In proportion to what the deviations in and around each pixel are taken for: the largest is 1.
-    deviations: Vec<f64>,
-    used: u64,
+    /// Of each colour in proportion to what its pixels' deviations are taken for: the largest is 1.
+    deviations: [Vec<f64>; 2],
+    width: usize,
+    first: u64,
 }
 
-/// The least and the most that a pixel gets, in parts of the mean.
-const LEAST: f64 = 0.125;
+/// The most that a pixel gets, in parts of the mean.
 const MOST: f64 = 64.0;
 
 impl Allocation {
-    /// Deviations that are all zero, or not all finite, tell nothing: then all pixels are alike.
-    pub(super) fn new(mut deviations: Vec<f64>, used: u64) -> Self {
-        let largest = deviations.iter().copied().fold(0.0, f64::max);
-        let usable = largest > 0.0 && deviations.iter().all(|deviation| deviation.is_finite());
-        for deviation in &mut deviations {
-            *deviation = if usable { *deviation / largest } else { 1.0 };
+    /// As the standard errors of `picture` tell, which has `first` samples in each pixel. Those that are not finite tell nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] for a picture without standard errors, as [`Average`](crate::Average) makes it.
+    pub fn new(picture: &Image, first: u64) -> Result<Self, Error> {
+        let errors = picture.std_error().ok_or_else(|| {
+            let what = "first picture of an adaptive one";
+            Error::refused(what, "one with standard errors", "without any")
+        })?;
+        let squares = errors.pixels().iter().map(|error| error.length_squared());
+        let squares: Vec<f64> = squares.collect();
+        let deviations = chessboard::deviations(&squares, picture.width());
+        Ok(Self::of(&deviations, picture.width(), first))
+    }
+
+    /// Deviations that are all zero, or not all finite, tell nothing: then all pixels of a colour are alike.
+    fn of(all: &[f64], width: usize, first: u64) -> Self {
+        let deviations = COLOURS.map(|own| {
+            let pixels = all.iter().enumerate();
+            let pixels = pixels.filter(|&(pixel, _)| colour(pixel, width) == own);
+            let mut deviations: Vec<f64> = pixels.map(|(_, &deviation)| deviation).collect();
+            let largest = deviations.iter().copied().fold(0.0, f64::max);
+            let usable = largest > 0.0 && deviations.iter().all(|deviation| deviation.is_finite());
+            for deviation in &mut deviations {
+                *deviation = if usable { *deviation / largest } else { 1.0 };
+            }
+            deviations
+        });
+        Self {
+            deviations,
+            width,
+            first,
         }
-        Self { deviations, used }
     }
 
-    /// How many samples the pilot took.
-    pub fn used(&self) -> u64 {
-        self.used
-    }
-
-    /// How many samples each pixel gets, row by row, `mean` in the mean, 1 if that is 0: in proportion to the standard deviation, which is
-    /// best for the mean square error of the whole picture with independent samples; the pilot, which is uncertain, tells its power of 3/4.
+    /// How many samples each pixel gets, row by row, the first ones included, `mean` in the mean, but no pixel less than it has: in proportion to the
+    /// standard deviation, which is best for the mean square error of the whole picture with independent samples. Deviations are
+    /// uncertain, and taken to the power of 3/4.
     pub fn counts(&self, mean: u64) -> Vec<u64> {
-        let mean = mean.max(1) as f64;
-        let [least, most] = [(LEAST * mean).ceil(), MOST * mean];
-        let share = |factor: f64, deviation: f64| (factor * deviation).clamp(least, most);
-        let given = |log: f64| {
-            self.deviations
-                .iter()
-                .map(|&d| share(log.exp(), d))
-                .sum::<f64>()
-        };
-        // The largest deviation is 1: from all at the least to all at the most, but those of deviation zero.
-        let positive = self.deviations.iter().copied().filter(|&d| d > 0.0);
-        let range = [least.ln(), (most / positive.fold(1.0, f64::min)).ln()];
-        let [log, _] = between(range, mean * self.deviations.len() as f64, given);
-        let factor = log.exp();
-        // Rounded so that the sums of all pixels so far are right to half a sample, hence the whole is.
-        let (mut wanted, mut given) = (0.0, 0.0);
-        let count = |&deviation: &f64| {
-            wanted += share(factor, deviation);
-            let count = (wanted - given).round().max(least);
-            given += count;
-            whole(count)
-        };
-        self.deviations.iter().map(count).collect()
+        self.each(|deviations| counts(deviations, self.first.max(1), mean))
     }
 
-    /// The same for nets, which are best in powers of `radix` points: each number is one, the next to its share, so that it may be below
-    /// the least or above the most by the root of the radix.
+    /// The same for nets, which are best in powers of `radix` points: each number is one, the next to its share, so that it may be
+    /// above the most by the root of the radix.
     ///
     /// The numbers go with a lower power of the deviation, 10/11: right where the variance falls as the number to the power of -6/5. That of
     /// three scenes fell as the powers from -1.1 to -1.2 between 64 and 256 samples a pixel.
@@ -72,54 +104,90 @@ impl Allocation {
     /// If the radix is below 2.
     pub fn powers(&self, mean: u64, radix: u32) -> Vec<u64> {
         assert!(radix >= 2, "a radix of {radix}");
-        let (mean, base) = (mean.max(1) as f64, f64::from(radix));
-        // Everything in logarithms to the base.
-        let weights: Vec<f64> = self
-            .deviations
-            .iter()
-            .map(|d| 10.0 / 11.0 * d.log(base))
-            .collect();
-        let limits = [(LEAST * mean).max(1.0), MOST * mean].map(|limit| limit.log(base));
-        let powers: Vec<f64> = (0..=i32::from(u8::MAX))
-            .map(|exponent| base.powi(exponent))
-            .collect();
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "between zero and the most, which is below the last power"
-        )]
-        let power = |factor: f64, weight: f64| {
-            powers[usize::from((factor + weight).clamp(limits[0], limits[1]).round() as u8)]
-        };
-        let given = |factor: f64| weights.iter().map(|&w| power(factor, w)).sum::<f64>();
-        // The largest weight is 0 or less: with these all are at the least or, but those of weight zero, at the most.
-        let lowest = weights
-            .iter()
-            .copied()
-            .filter(|w| w.is_finite())
-            .fold(0.0, f64::min);
-        let target = mean * weights.len() as f64;
-        let [low, high] = between([limits[0] - 1.0, limits[1] - lowest + 1.0], target, given);
-        // What is left goes to some of the pixels for which the two differ, spread evenly.
-        let (few, many) = (given(low), given(high));
-        let part = if many > few {
-            ((target - few) / (many - few)).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        let (mut wanted, mut spent) = (0.0, 0.0);
-        let count = |&weight: &f64| {
-            let (fewer, more) = (power(low, weight), power(high, weight));
-            let step = more - fewer;
-            wanted += part * step;
-            if step > 0.0 && wanted - spent >= 0.5 * step {
-                spent += step;
-                return whole(more);
-            }
-            whole(fewer)
-        };
-        weights.iter().map(count).collect()
+        self.each(|deviations| powers(deviations, self.first.max(1), mean, radix))
     }
+
+    /// What is dealt to each colour, in the order of the picture.
+    fn each(&self, deal: impl Fn(&[f64]) -> Vec<u64>) -> Vec<u64> {
+        let mut dealt = self.deviations.each_ref().map(|own| deal(own).into_iter());
+        let pixels = 0..self.deviations.iter().map(Vec::len).sum();
+        let next = |pixel| dealt[colour(pixel, self.width)].next();
+        pixels.map_while(next).collect()
+    }
+}
+
+/// In proportion to the deviations.
+fn counts(deviations: &[f64], first: u64, mean: u64) -> Vec<u64> {
+    let [first, mean] = [first, mean.max(first)].map(|count| count as f64);
+    let most = MOST * mean;
+    let share = |factor: f64, deviation: f64| (factor * deviation).clamp(first, most);
+    let given = |log: f64| {
+        let shares = deviations.iter().map(|&d| share(log.exp(), d));
+        shares.sum::<f64>()
+    };
+    // The largest deviation is 1: from all at the least to all at the most, but those of deviation zero.
+    let positive = deviations.iter().copied().filter(|&d| d > 0.0);
+    let range = [first.ln(), (most / positive.fold(1.0, f64::min)).ln()];
+    let [log, _] = between(range, mean * deviations.len() as f64, given);
+    let factor = log.exp();
+    // Rounded so that the sums of all pixels so far are right to half a sample, hence the whole is.
+    let (mut wanted, mut given) = (0.0, 0.0);
+    let count = |&deviation: &f64| {
+        wanted += share(factor, deviation);
+        let count = (wanted - given).round().max(first);
+        given += count;
+        whole(count)
+    };
+    deviations.iter().map(count).collect()
+}
+
+/// In powers of a radix.
+fn powers(deviations: &[f64], first: u64, mean: u64, radix: u32) -> Vec<u64> {
+    let base = f64::from(radix);
+    // Everything in logarithms to the base.
+    let weights: Vec<f64> = (deviations.iter())
+        .map(|d| 10.0 / 11.0 * d.log(base))
+        .collect();
+    let powers: Vec<f64> = (0..=i32::from(u8::MAX))
+        .map(|exponent| base.powi(exponent))
+        .collect();
+    // The least that is not less than the pixel has.
+    let least = powers.partition_point(|&power| power < first as f64);
+    let mean = powers[least].max(mean as f64);
+    let limits = [least as f64, (MOST * mean).log(base)];
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between zero and the most, which is below the last power"
+    )]
+    let power = |factor: f64, weight: f64| {
+        powers[usize::from((factor + weight).clamp(limits[0], limits[1]).round() as u8)]
+    };
+    let given = |factor: f64| weights.iter().map(|&w| power(factor, w)).sum::<f64>();
+    // The largest weight is 0 or less: with these all are at the least or, but those of weight zero, at the most.
+    let finite = weights.iter().copied().filter(|w| w.is_finite());
+    let lowest = finite.fold(0.0, f64::min);
+    let target = mean * weights.len() as f64;
+    let [low, high] = between([limits[0] - 1.0, limits[1] - lowest + 1.0], target, given);
+    // What is left goes to some of the pixels for which the two differ, spread evenly.
+    let (few, many) = (given(low), given(high));
+    let part = if many > few {
+        ((target - few) / (many - few)).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let (mut wanted, mut spent) = (0.0, 0.0);
+    let count = |&weight: &f64| {
+        let (fewer, more) = (power(low, weight), power(high, weight));
+        let step = more - fewer;
+        wanted += part * step;
+        if step > 0.0 && wanted - spent >= 0.5 * step {
+            spent += step;
+            return whole(more);
+        }
+        whole(fewer)
+    };
+    weights.iter().map(count).collect()
 }
 
 /// Steps of the search for a factor.
@@ -153,18 +221,24 @@ mod tests {
 
     #[test]
     fn counts_follow_the_deviations() {
-        let allocation = |deviations: &[f64]| Allocation::new(deviations.to_vec(), 0);
-        // An eighth of 16 for the first; 62 for eight parts.
-        assert_eq!(allocation(&[0.0, 1.0, 2.0, 5.0]).counts(16), [2, 8, 15, 39]);
+        // Every second one is of the same colour, in a row.
+        let allocation = |deviations: &[f64], first| {
+            let row: Vec<f64> = deviations.iter().flat_map(|&d| [d, 1.0]).collect();
+            Allocation::of(&row, row.len(), first)
+        };
+        let of_colour = |counts: Vec<u64>| -> Vec<u64> { counts.into_iter().step_by(2).collect() };
+        // 62 for eight parts.
+        let counts = allocation(&[0.0, 1.0, 2.0, 5.0], 2).counts(16);
+        assert_eq!(counts, [2, 16, 8, 16, 15, 16, 39, 16]);
         // None gets more than 64 times the mean: there is more for the others.
         let mut rare = vec![1e-9; 99];
         rare.push(1.0);
-        let counts = allocation(&rare).counts(10);
+        let counts = of_colour(allocation(&rare, 1).counts(10));
         assert_eq!((counts[99], counts.iter().sum::<u64>()), (640, 1000));
         assert!(counts[..99].iter().all(|&count| count == 3 || count == 4));
         // What tells nothing.
         for deviation in [0.0, 3.0, 1e-300, f64::INFINITY, f64::NAN] {
-            let even = allocation(&[deviation; 5]);
+            let even = Allocation::of(&[deviation; 5], 5, 1);
             assert_eq!(
                 (even.counts(7), even.powers(8, 2)),
                 (vec![7; 5], vec![8; 5])
@@ -174,15 +248,39 @@ mod tests {
                 (vec![1; 5], vec![1; 5])
             );
         }
-        let _ = allocation(&[1.0, 2.0]).counts(u64::MAX);
-        let _ = allocation(&[1.0, 2.0]).powers(u64::MAX, 2);
+        // All that there are, or more than are wanted, were first.
+        for mean in [0, 5, 6] {
+            let all = allocation(&[1.0, 2.0], 6);
+            assert_eq!(
+                (all.counts(mean), all.powers(mean, 2)),
+                (vec![6; 4], vec![8; 4])
+            );
+        }
+        for first in [1, u64::MAX] {
+            let _ = allocation(&[1.0, 2.0], first).counts(u64::MAX);
+            let _ = allocation(&[1.0, 2.0], first).powers(u64::MAX, 2);
+        }
+    }
+
+    #[test]
+    fn pictures_need_errors() {
+        let pixels = || vec![glam::DVec3::ONE; 6];
+        let image = Image::new(3, pixels()).unwrap();
+        let error = Allocation::new(&image, 4).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "the first picture of an adaptive one must be one with standard errors; it was without any"
+        );
+        let errors = Image::new(3, pixels()).unwrap();
+        let image = image.with_std_error(errors).unwrap();
+        assert_eq!(Allocation::new(&image, 4).unwrap().counts(7), [7; 6]);
     }
 
     #[test]
     fn powers_keep_the_mean() {
         let steep = (0..4096).map(|i| (f64::from(i) / 500.0).exp()).collect();
         for deviations in [steep, vec![1.0; 4096], vec![0.0; 4096]] {
-            let allocation = Allocation::new(deviations, 0);
+            let allocation = Allocation::of(&deviations, 64, 1);
             for (mean, radix) in [(64, 2), (56, 2), (6, 2), (1, 2), (64, 3), (64, 101)] {
                 let counts = allocation.powers(mean, radix);
                 let radix = u64::from(radix);
@@ -192,10 +290,10 @@ mod tests {
                     "{mean} {radix}"
                 );
                 let (given, most) = (counts.iter().sum::<u64>(), counts.iter().max());
-                // Half of the step that the pixel that is next would make.
+                // Half of the step that the pixel that is next would make, in each colour.
                 let off = given.abs_diff(4096 * mean);
                 let step = (radix - 1) * most.unwrap();
-                assert!(2 * off <= step, "{mean} {radix}: {given}");
+                assert!(off <= step, "{mean} {radix}: {given}");
             }
         }
     }
@@ -211,7 +309,7 @@ mod tests {
     #[test]
     fn the_variance_is_near_the_least() {
         let deviations: Vec<f64> = (0..4096).map(|i| 1.0 + f64::from(i % 64)).collect();
-        let allocation = Allocation::new(deviations.clone(), 0);
+        let allocation = Allocation::of(&deviations, 64, 1);
         // Lagrange: the counts in proportion to the deviations to the power 2 / (1 + power).
         let least = |power: f64| {
             let shares = deviations.iter().map(|d| d.powf(2.0 / (1.0 + power)));

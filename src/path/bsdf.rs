@@ -88,6 +88,18 @@ pub trait Bsdf: Sync {
         None
     }
 
+    /// Whether it is [`Lambertian`] wherever the surface is hit, the same everywhere or not: then [`lambertian_at`](Self::lambertian_at) tells
+    /// which, and where many paths are traced at once the law is asked for that alone.
+    fn is_lambertian(&self) -> bool {
+        self.as_lambertian().is_some()
+    }
+
+    /// What it is at a point, if it [is](Self::is_lambertian) [`Lambertian`] everywhere.
+    fn lambertian_at(&self, at: &Surface<Self::Detail>) -> Option<Lambertian> {
+        let _ = at;
+        self.as_lambertian().copied()
+    }
+
     /// The value for a pair of directions, times the cosine of `into`, and the density with which
     /// [`sample`](Self::sample) draws `into`. Single directions do not count.
     fn evaluate(&self, at: &Surface<Self::Detail>, out: Vec3A, into: Vec3A) -> Scattering;

@@ -18,7 +18,7 @@ mod walk;
 use glam::{Vec3, Vec3A};
 
 use super::Paths;
-use super::bsdf::{Scattered, Scattering};
+use super::bsdf::{Lambertian, Scattered, Scattering};
 use super::geometry::{Geometry, Hit};
 use super::light::{AreaLights, Emission, Illumination, Sky};
 use super::render::Start;
@@ -49,6 +49,8 @@ pub(in crate::path) struct Packet {
     triangles: bool,
     slanted_lights: bool,
     one_sided: bool,
+    /// Whether any ideally diffuse law is another from point to point.
+    varying: bool,
     /// Whether any law is another than the ideally diffuse one.
     others: bool,
     /// Whether the view is asked for all light of shapes, lane by lane.
@@ -62,6 +64,9 @@ pub(in crate::path) struct Packet {
 pub(in crate::path) trait Single<U> {
     /// What the law at a point does for a pair of directions.
     fn evaluate(&self, at: &Hit, out: Vec3A, into: Vec3A) -> Scattering;
+
+    /// The ideally diffuse law at a point where it is one.
+    fn lambertian(&self, at: &Hit) -> Option<Lambertian>;
 
     /// A direction that the law at a point draws.
     fn sample(&self, at: &Hit, out: Vec3A, u: &mut U) -> Option<Scattered>;
@@ -114,7 +119,8 @@ impl Packet {
             around: around.unwrap_or(Vec3A::ZERO),
             triangles: false,
             slanted_lights: false,
-            one_sided: laws().any(|law| law.inner() == 0.0),
+            one_sided: laws().any(|law| law.inner() == 0.0 || law.varies()),
+            varying: laws().any(Law::varies),
             others: laws().any(|law| !law.is_diffuse()),
             asks_lights: lights.is_none(),
             asks_around: around.is_none(),
@@ -179,7 +185,8 @@ impl Packet {
         values: &mut [Vec3],
     ) {
         let asks = self.asks_lights || self.asks_around;
-        let plain = self.solids.is_none() && !self.others && !asks && single.sky().is_none();
+        let constant = !self.others && !self.varying;
+        let plain = self.solids.is_none() && constant && !asks && single.sky().is_none();
         if plain {
             self.walk::<U, true>(paths, single, start, points, values);
         } else {

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3, Vec3A};
 
 use super::bsdf::Bsdf;
 #[cfg(feature = "simd")]
-use super::bsdf::{Scattered, Scattering};
+use super::bsdf::{Lambertian, Scattered, Scattering};
 use super::filter::{BoxFilter, Filter};
 #[cfg(feature = "simd")]
 use super::geometry::{Geometry, Hit};
@@ -74,6 +74,11 @@ impl<U: Sampler, B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Single
     fn evaluate(&self, at: &Hit, out: Vec3A, into: Vec3A) -> Scattering {
         let vertex = self.scene.vertex(*at);
         vertex.bsdf.evaluate(&vertex.surface, out, into)
+    }
+
+    fn lambertian(&self, at: &Hit) -> Option<Lambertian> {
+        let vertex = self.scene.vertex(*at);
+        vertex.bsdf.lambertian_at(&vertex.surface)
     }
 
     fn sample(&self, at: &Hit, out: Vec3A, u: &mut U) -> Option<Scattered> {

@@ -4,7 +4,7 @@ use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3A;
 
-use super::{Law, Scattered, Scattering};
+use super::{Lambertian, Law, Scattered, Scattering};
 use crate::path::frame::{cosine_density, cosine_hemisphere, singles};
 use crate::path::texture::{self, Parameter, Uniform};
 use crate::{Error, Sampler};
@@ -28,6 +28,14 @@ impl<P: Parameter> Diffuse<P> {
         Ok(Self {
             reflectance: texture::fraction("reflectance", reflectance)?,
         })
+    }
+}
+
+impl<P: Parameter> Diffuse<P> {
+    /// What it is at a place.
+    #[inline]
+    pub(super) fn lambertian(&self, place: &P::Place) -> Lambertian {
+        Lambertian::known(self.reflectance.color(place)).outside()
     }
 }
 

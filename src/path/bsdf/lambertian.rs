@@ -32,6 +32,22 @@ impl Lambertian {
         })
     }
 
+    /// That of an albedo which is known to be in range.
+    #[inline]
+    pub(super) fn known(albedo: Vec3A) -> Self {
+        Self {
+            albedo,
+            sides: Sides::Both,
+        }
+    }
+
+    /// The same on both sides.
+    #[inline]
+    pub(super) fn both(mut self) -> Self {
+        self.sides = Sides::Both;
+        self
+    }
+
     /// The same on the outer side alone. The inner side is black.
     #[must_use]
     pub fn outside(mut self) -> Self {

@@ -215,6 +215,27 @@ impl<P: Parameter> super::Bsdf for Material<P> {
         }
     }
 
+    fn is_lambertian(&self) -> bool {
+        match self {
+            Self::Lambertian(_) | Self::Diffuse(_) => true,
+            Self::TwoSided(sides) => sides.same().is_some_and(super::Bsdf::is_lambertian),
+            _ => false,
+        }
+    }
+
+    #[inline]
+    fn lambertian_at(&self, at: &Surface<Self::Detail>) -> Option<Lambertian> {
+        match self {
+            Self::Lambertian(law) => Some(*law),
+            Self::Diffuse(law) => {
+                let frame: Frame = P::Place::frame(at);
+                Some(law.lambertian(&P::Place::of(at, &frame)))
+            }
+            Self::TwoSided(sides) => Some(sides.same()?.lambertian_at(at)?.both()),
+            _ => None,
+        }
+    }
+
     #[inline]
     fn is_delta(&self) -> bool {
         Law::is_delta(self)
@@ -222,9 +243,9 @@ impl<P: Parameter> super::Bsdf for Material<P> {
 
     #[inline]
     fn evaluate(&self, at: &Surface<Self::Detail>, out: Vec3A, into: Vec3A) -> Scattering {
-        match self {
-            Self::Lambertian(law) => super::Bsdf::evaluate(law, &shaded::<P>(at), out, into),
-            _ => law::evaluate(self, at, out, into),
+        match self.lambertian_at(at) {
+            Some(law) => super::Bsdf::evaluate(&law, &shaded::<P>(at), out, into),
+            None => law::evaluate(self, at, out, into),
         }
     }
 
@@ -235,8 +256,10 @@ impl<P: Parameter> super::Bsdf for Material<P> {
         out: Vec3A,
         u: &mut S,
     ) -> Option<Scattered> {
+        if let Some(law) = self.lambertian_at(at) {
+            return super::Bsdf::sample(&law, &shaded::<P>(at), out, u);
+        }
         match self {
-            Self::Lambertian(law) => super::Bsdf::sample(law, &shaded::<P>(at), out, u),
             Self::Mirror(law) => super::Bsdf::sample(law, &shaded::<P>(at), out, u),
             Self::Dielectric(law) => {
                 let frame: Frame = P::Place::frame(at);

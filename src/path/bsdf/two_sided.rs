@@ -42,6 +42,12 @@ impl<L> TwoSided<L> {
         }
     }
 
+    /// The law, if it is the same on both sides.
+    #[inline]
+    pub(super) fn same(&self) -> Option<&L> {
+        self.inner.is_none().then_some(&self.outer)
+    }
+
     #[inline]
     fn inner(&self) -> &L {
         self.inner.as_ref().unwrap_or(&self.outer)

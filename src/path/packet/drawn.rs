@@ -242,6 +242,16 @@ impl Hits<'_> {
         })
     }
 
+    /// The albedos of the ideally diffuse laws at the active lanes, and 1 where the inner side scatters as the outer one does, 0 where it is
+    /// black.
+    #[inline(never)]
+    pub(super) fn lambertian<U>(&self, single: &dyn Single<U>, active: &Row<f32>) -> Weights {
+        Weights::of(active, |lane| match single.lambertian(&self.hit(lane)) {
+            Some(law) => (law.albedo, f32::from(u8::from(law.has_inside()))),
+            None => (Vec3A::ZERO, 0.0),
+        })
+    }
+
     /// What the laws of the active lanes do for light from some directions.
     #[inline(never)]
     pub(super) fn evaluate<U>(

@@ -58,6 +58,8 @@ pub(super) enum Kind {
     Diffuse,
     /// Ideally diffuse on the outer side, black on the inner one.
     OneSided,
+    /// Ideally diffuse, as the scene says at every point.
+    Varying,
     /// Any other, which the scene is asked for.
     Other,
     /// One that scatters light to single directions only.
@@ -77,7 +79,9 @@ impl Law {
             },
             None => Self {
                 albedo: Vec3A::ZERO,
-                kind: if bsdf.is_delta() {
+                kind: if bsdf.is_lambertian() {
+                    Kind::Varying
+                } else if bsdf.is_delta() {
                     Kind::Delta
                 } else {
                     Kind::Other
@@ -88,14 +92,20 @@ impl Law {
 
     /// Whether it is ideally diffuse.
     pub(in crate::path) fn is_diffuse(&self) -> bool {
-        matches!(self.kind, Kind::Diffuse | Kind::OneSided)
+        matches!(self.kind, Kind::Diffuse | Kind::OneSided | Kind::Varying)
     }
 
-    /// 0 for the ideally diffuse law, 1 for others, 2 for those of single directions.
+    /// Whether the scene is asked for its albedo.
+    pub(super) fn varies(&self) -> bool {
+        self.kind == Kind::Varying
+    }
+
+    /// 0 for the ideally diffuse law, 1/2 where it varies, 1 for others, 2 for those of single directions.
     #[inline(always)]
     pub(super) fn kind(&self) -> f32 {
         match self.kind {
             Kind::Diffuse | Kind::OneSided => 0.0,
+            Kind::Varying => VARYING,
             Kind::Other => OTHER,
             Kind::Delta => DELTA,
         }
@@ -112,5 +122,6 @@ impl Law {
     }
 }
 
+pub(super) const VARYING: f32 = 0.5;
 pub(super) const OTHER: f32 = 1.0;
 pub(super) const DELTA: f32 = 2.0;

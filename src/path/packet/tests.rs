@@ -5,7 +5,7 @@ use glam::{Affine2, Affine3A, DMat3, Mat3A, Vec2, Vec3, Vec3A};
 use crate::hash::{hash, unit_f32};
 use crate::path::bsdf::{
     Bsdf, Conductor, Dielectric, Diffuse, Distribution, Lambertian, Mask, Material, Mirror, Null,
-    Plastic, RoughConductor, Roughness, Tint,
+    Plastic, RoughConductor, Roughness, Tint, TwoSided,
 };
 use crate::path::frame::single;
 use crate::path::geometry::FEW;
@@ -300,6 +300,8 @@ fn balls<P: Parameter + From<Uniform>, L: Light, E: Environment>(
         Mask::new(color(0.5), white.clone()).into(),
         Diffuse::new(tiles.clone())?.into(),
         Null.into(),
+        TwoSided::new(Diffuse::new(tiles.clone())?.into()).into(),
+        TwoSided::different(Diffuse::new(tiles)?.into(), white.clone()).into(),
     ];
     let ground = Flat::parallelogram([-4.0, 0.0, 4.0], [8.0, 0.0, 0.0], [0.0, 0.0, -8.0])?;
     let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])?;
@@ -352,6 +354,30 @@ fn packets_give_the_bits_of_single_paths_among_spheres_of_any_law() {
     agree(&balls::<_, NoLight, _>(false, grey, surroundings).unwrap());
     agree(&balls::<_, AreaLights, _>(true, tiles(), sky()).unwrap());
     agree(&balls::<_, NoLight, _>(false, tiles(), constant).unwrap());
+}
+
+#[test]
+fn packets_give_the_bits_of_single_paths_where_only_albedos_vary() {
+    let tiles = |scale: f32| {
+        let colors = [0.9, 0.1].map(|color| Uniform::from(color).into());
+        let tiles = Checkerboard::new(colors, Affine2::from_scale(Vec2::splat(scale)));
+        Diffuse::new(Texture::from(tiles)).unwrap()
+    };
+    let view = |environment| {
+        let ground = Flat::parallelogram([-4.0, 0.0, 4.0], [8.0, 0.0, 0.0], [0.0, 0.0, -8.0])?;
+        let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])?;
+        let wall = Flat::parallelogram([-1.0, 0.0, -1.0], [2.0, 0.0, 0.2], [0.0, 1.5, 0.0])?;
+        let both = TwoSided::new(Material::from(tiles(3.0)));
+        let grey: Material<Texture> = Lambertian::new([0.3; 3])?.into();
+        let objects: Vec<Object<Material<Texture>>> = vec![
+            Object::new([ground], tiles(8.0)),
+            Object::new([wall], both),
+            Object::new([lamp], grey).emitting([6.0; 3])?,
+        ];
+        let scene = Scene::<_, AreaLights, _>::new(objects, environment)?;
+        seen_from([0.1, 1.5, 3.0], 60.0, scene)
+    };
+    agree(&view(Constant::new([0.2, 0.3, 0.4]).unwrap()).unwrap());
 }
 
 #[test]

@@ -10,7 +10,7 @@ use pulp::{Simd, WithSimd};
 use super::drawn::{Draws, Hits, Illuminated, Scatters, Weights};
 use super::lamp::Lamp;
 use super::math::{around, cosine_hemisphere, power};
-use super::optics::{DELTA, OTHER};
+use super::optics::{DELTA, OTHER, VARYING};
 use super::solids::{Rays, passes};
 use super::sweep::Shapes;
 use super::{Packet, Single, Start};
@@ -195,7 +195,8 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         let here = packet.here(simd, &hit, solids.as_ref());
         // What the view is asked about these points.
         let asks = others || asks_lights || asks_around;
-        let hits = asks.then(|| here.hits(&packet.table, &state.direction));
+        let varying = !PLAIN && packet.varying;
+        let hits = (asks || varying).then(|| here.hits(&packet.table, &state.direction));
         // Emitted light, met by a direction that was drawn at the surface before.
         let mut lit = met & here.shines();
         if !asks_lights {
@@ -214,23 +215,35 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         }
         let facing = here.shading.dot(-direction);
         let mut walking = met & segment.lt(Real::splat(simd, self.paths.longest as f32));
+        let kind = if others || varying {
+            here.kind(simd, &packet.table)
+        } else {
+            zero
+        };
+        let mut albedo = here.albedo(simd, &packet.table);
+        let mut inner = if packet.one_sided {
+            here.inner(simd, &packet.table)
+        } else {
+            one
+        };
+        let asked = walking & kind.eq(Real::splat(simd, VARYING));
+        if let Some(hits) = hits.as_ref().filter(|_| varying && asked.any()) {
+            let laws = hits.lambertian(self.single, &asked.row(simd));
+            albedo = asked.choose(laws.weight(simd), albedo);
+            inner = asked.select(laws.density(simd), inner);
+        }
         if packet.one_sided {
-            walking = walking & (here.inner(simd, &packet.table).gt(zero) | facing.gt(zero));
+            walking = walking & (inner.gt(zero) | facing.gt(zero));
         }
         if !walking.any() {
             radiance.store(&mut state.radiance);
             zero.store(&mut state.segment);
             return;
         }
-        let kind = if others {
-            here.kind(simd, &packet.table)
-        } else {
-            zero
-        };
         let at = Laws {
             shading: here.shading,
             facing,
-            albedo: here.albedo(simd, &packet.table),
+            albedo,
             other: kind.ge(Real::splat(simd, OTHER)),
             hits: hits.as_ref(),
         };

@@ -7,7 +7,7 @@ use crate::Sampler;
 use crate::path::frame::single;
 use crate::path::lanes::{Mask, Real, Row, WIDEST};
 use crate::path::packet::drawn::{Draws, Hits};
-use crate::path::packet::optics::DELTA;
+use crate::path::packet::optics::{DELTA, OTHER};
 
 impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
     /// What the paths draw at their points, where the view is asked or the sky is a picture: two coordinates for a point of flat
@@ -47,7 +47,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
                     count += 1;
                 }
             }
-            if kind == 0.0 {
+            if kind < OTHER {
                 let [c, d] = sampler.next_2d();
                 (u[2].0[lane], u[3].0[lane]) = (single(c), single(d));
             } else if let (Some(hits), Some(scattered)) = (hits, &mut draws.scattered) {

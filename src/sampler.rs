@@ -131,6 +131,20 @@ impl<'a, P: PointSet + ?Sized> Cursor<'a, P> {
         !self.ahead.as_slice().is_empty()
     }
 
+    fn copy(&self) -> Self {
+        Self {
+            ahead: self.ahead.clone(),
+            ..*self
+        }
+    }
+
+    /// The next coordinates, some of them past those at hand, and the cursor after them.
+    #[cold]
+    #[inline(never)]
+    fn across<const N: usize>(mut self) -> ([f64; N], Self) {
+        (core::array::from_fn(|_| self.next_1d()), self)
+    }
+
     /// The next coordinate past those at hand.
     #[inline]
     fn beyond(&mut self) -> f64 {
@@ -180,12 +194,8 @@ impl<P: PointSet + ?Sized> Sampler for Cursor<'_, P> {
             }
             None => {
                 // Of a copy, so that a cursor that never comes here can live in registers.
-                let mut copy = Self {
-                    ahead: self.ahead.clone(),
-                    ..*self
-                };
-                let coordinates = core::array::from_fn(|_| copy.next_1d());
-                *self = copy;
+                let coordinates;
+                (coordinates, *self) = self.copy().across();
                 coordinates
             }
         }

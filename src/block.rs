@@ -108,8 +108,9 @@ impl<V: Value> Block<V> {
     }
 
     /// What the block has given, or `None` if plain arithmetic does not do: a value that is not finite,
-    /// or deviations whose squares leave the range of `f64`.
-    #[inline]
+    /// or deviations whose squares leave the range of `f64`. A function of its own: within the loop that adds values up it would
+    /// take the lanes apart.
+    #[inline(never)]
     pub(crate) fn piece(&self) -> Option<Piece<V>> {
         const ORDINARY: core::ops::Range<f64> = 1e-250..1e300;
         let count = self.count as f64;

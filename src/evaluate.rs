@@ -27,9 +27,12 @@ pub(crate) trait Visit {
     /// At the points `indices`, each of which begins in the stream `u` where the one before it ended; `begin` is told when.
     fn stream<S: Sampler>(&mut self, indices: Range<u64>, u: &mut S, begin: impl Fn(&mut S));
 
-    /// At the points `indices`, which `at` gives in any order. Breaks off if no others are wanted.
-    fn points<S: Sampler>(&mut self, indices: Range<u64>, at: impl Fn(u64) -> S)
-    -> ControlFlow<()>;
+    /// At the points `indices`, of which `at` gives any part in order. Breaks off if no others are wanted.
+    fn points<S: Sampler, P: Iterator<Item = S>>(
+        &mut self,
+        indices: Range<u64>,
+        at: impl Fn(Range<u64>) -> P,
+    ) -> ControlFlow<()>;
 }
 
 /// Coordinates computed ahead per call of `fill`: 32 KiB, which the first-level cache holds.
@@ -41,35 +44,46 @@ thread_local! {
     static ROOM: Cell<Vec<f64>> = const { Cell::new(Vec::new()) };
 }
 
+/// Runs `job` with room for `length` coordinates, which hold anything.
+pub(crate) fn with_room<R>(length: usize, job: impl FnOnce(&mut [f64]) -> R) -> R {
+    let mut room = ROOM.take();
+    if room.len() < length {
+        room.resize(length, 0.0);
+    }
+    let result = job(&mut room[..length]);
+    ROOM.set(room);
+    result
+}
+
 impl<P: PointSet> Source for P {
     fn points(&self, indices: Range<u64>, _: u64, dimensions: u32, visit: &mut impl Visit) {
         let dimensions = dimensions.min(self.dimensions());
         let width = dimensions as usize;
         if width == 0 || width > AHEAD {
-            let _ = visit.points(indices, |index| self.point(index));
+            let _ = visit.points(indices, |part| part.map(|index| self.point(index)));
             return;
         }
         // A power of two: nets fill such blocks fastest.
         let most = 1 << (AHEAD / width).ilog2();
-        let mut room = ROOM.take();
-        room.resize(AHEAD, 0.0);
-        let (mut index, end) = (indices.start, indices.end);
-        while index < end {
-            let rows = usize::try_from(end - index).map_or(most, |left| left.min(most));
-            let ahead = &mut room[..rows * width];
-            self.fill(index, 0..dimensions, ahead);
-            let (first, ahead) = (index, &*ahead);
-            let at = move |index| {
-                #[expect(clippy::cast_possible_truncation, reason = "below the number of rows")]
-                let row = (index - first) as usize;
-                Cursor::with_prefix(self, index, &ahead[row * width..][..width])
-            };
-            if visit.points(first..first + rows as u64, at).is_break() {
-                break;
+        with_room(most * width, |room| {
+            let (mut index, end) = (indices.start, indices.end);
+            while index < end {
+                let rows = usize::try_from(end - index).map_or(most, |left| left.min(most));
+                let ahead = &mut room[..rows * width];
+                self.fill(index, 0..dimensions, ahead);
+                let (first, ahead) = (index, &*ahead);
+                let at = move |part: Range<u64>| {
+                    #[expect(clippy::cast_possible_truncation, reason = "below the number of rows")]
+                    let row = (part.start - first) as usize;
+                    let rows = ahead[row * width..].chunks_exact(width).zip(part);
+                    rows.map(move |(row, index)| Cursor::with_row(self, index, row, dimensions))
+                };
+                if visit.points(first..first + rows as u64, at).is_break() {
+                    break;
+                }
+                index += rows as u64;
             }
-            index += rows as u64;
-        }
-        ROOM.set(room);
+        });
     }
 }
 
@@ -246,7 +260,9 @@ impl<'a, I: Integrand> Fast<'a, I> {
         }
     }
 
-    /// Adds the first values of the room to the block.
+    /// Adds the first values of the room to the block. A function of its own: within the loop over points the machine would
+    /// have no registers for the sums.
+    #[inline(never)]
     fn add(&mut self, count: usize) {
         self.block.extend(&self.values[..count], Value::widen);
     }
@@ -266,10 +282,10 @@ impl<I: Integrand> Visit for Fast<'_, I> {
         }
     }
 
-    fn points<S: Sampler>(
+    fn points<S: Sampler, P: Iterator<Item = S>>(
         &mut self,
         indices: Range<u64>,
-        at: impl Fn(u64) -> S,
+        at: impl Fn(Range<u64>) -> P,
     ) -> ControlFlow<()> {
         let most = if I::AT_ONCE > 1 {
             I::AT_ONCE
@@ -284,11 +300,11 @@ impl<I: Integrand> Visit for Fast<'_, I> {
             let values = &mut self.values[..count];
             if I::AT_ONCE > 1 {
                 samplers.clear();
-                samplers.extend(group.clone().map(&at));
+                samplers.extend(at(group.clone()));
                 self.integrand.evaluate_many(&mut samplers, values);
             } else {
-                for (value, index) in values.iter_mut().zip(group.clone()) {
-                    *value = self.integrand.evaluate(&mut at(index));
+                for (value, mut u) in values.iter_mut().zip(at(group.clone())) {
+                    *value = self.integrand.evaluate(&mut u);
                 }
             }
             self.add(count);
@@ -338,11 +354,12 @@ impl<I: Integrand> Visit for Careful<'_, I> {
         });
     }
 
-    fn points<S: Sampler>(
+    fn points<S: Sampler, P: Iterator<Item = S>>(
         &mut self,
-        mut indices: Range<u64>,
-        at: impl Fn(u64) -> S,
+        indices: Range<u64>,
+        at: impl Fn(Range<u64>) -> P,
     ) -> ControlFlow<()> {
-        indices.try_for_each(|index| self.point(index, &mut at(index)))
+        let mut points = indices.clone().zip(at(indices));
+        points.try_for_each(|(index, mut u)| self.point(index, &mut u))
     }
 }

@@ -154,6 +154,10 @@ fn grade(shares: &mut [f64], axis: &[f64]) {
     let mut raise = |bin: usize, neighbour: usize| {
         // So many bins, each twice as wide as the one before, lead from the neighbour across the bin.
         let ratio = width(bin) / width(neighbour).max(f64::MIN_POSITIVE);
+        // Mostly they are not: the logarithm is below 0.73 of the ratio.
+        if shares[neighbour] * (0.73 * ratio) <= shares[bin] {
+            return;
+        }
         shares[bin] = shares[bin].max(shares[neighbour] * (1.0 + 0.5 * ratio).log2());
     };
     let last = axis.len() - 2;

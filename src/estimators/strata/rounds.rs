@@ -29,36 +29,46 @@ impl Rounds {
             .map_or(u64::MAX, |times| first.saturating_mul(times))
     }
 
-    /// How many points the stratum that is due `due` has after `round`.
-    fn after(&self, round: u32, due: u64) -> u64 {
-        let about = self.about(round);
-        if about >= self.total {
-            return due;
-        }
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a part of what is due"
-        )]
-        let part = (due as f64 * (about as f64 / self.total as f64)) as u64;
-        part.clamp(2, due)
+    /// The part of all points that there is after `round`.
+    fn part(&self, round: u32) -> f64 {
+        self.about(round) as f64 / self.total as f64
     }
 
-    /// How many points a stratum has before `round`.
-    fn sofar(&self, round: u32, due: u64) -> u64 {
-        round.checked_sub(1).map_or(0, |last| self.after(last, due))
+    /// How many points each stratum has before `round`.
+    fn sofar(&self, round: u32) -> impl Iterator<Item = u64> {
+        let part = round.checked_sub(1).map(|last| self.part(last));
+        let sofar = move |&due| part.map_or(0, |part| dealt(part, due));
+        self.due.iter().map(sofar)
     }
 
     /// How many points there are before `round`.
     pub(super) fn before(&self, round: u32) -> u64 {
-        self.due.iter().map(|&due| self.sofar(round, due)).sum()
+        self.sofar(round).sum()
     }
 
     /// How many points each stratum gets in `round`.
     pub(super) fn counts(&self, round: u32) -> Vec<u64> {
-        let here = |&due: &u64| self.after(round, due) - self.sofar(round, due);
-        self.due.iter().map(here).collect()
+        let part = self.part(round);
+        let dealt = self.due.iter().map(|&due| dealt(part, due));
+        dealt
+            .zip(self.sofar(round))
+            .map(|(after, before)| after - before)
+            .collect()
     }
+}
+
+/// How many of the points that a stratum is `due` it has when there is a `part` of all.
+fn dealt(part: f64, due: u64) -> u64 {
+    if part >= 1.0 {
+        return due;
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a part of what is due"
+    )]
+    let here = (due as f64 * part) as u64;
+    here.clamp(2, due)
 }
 
 #[cfg(test)]

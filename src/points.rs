@@ -84,6 +84,7 @@ mod strata;
 mod stratified;
 mod van_der_corput;
 
+pub(crate) use block::vectorised;
 pub use blue_noise::{BlueNoise, BlueNoisePixel};
 pub use faure::Faure;
 pub use folded::Folded;

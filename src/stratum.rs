@@ -9,7 +9,7 @@ mod together;
 mod walk;
 
 pub(crate) use together::Stratified;
-pub(crate) use walk::{Look, Rows, Visitor, Walk};
+pub(crate) use walk::{Look, Rows, Run, Visitor, Walk};
 
 /// What the points of a stratum have given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,7 +135,10 @@ pub(crate) fn apportion(scores: &[f64], count: u64) -> Vec<u64> {
                 clippy::cast_sign_loss,
                 reason = "a part of the count"
             )]
-            let end = ((share * free as f64).round() as u64).clamp(given, free);
+            let down = (share * free as f64) as u64;
+            // To the nearest; `f64::round` is a call of a function, which takes as long as the rest.
+            let up = share * free as f64 - down as f64 >= 0.5;
+            let end = down.saturating_add(up.into()).clamp(given, free);
             let here = end - given;
             given = end;
             2 + here

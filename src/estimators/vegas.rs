@@ -13,8 +13,10 @@ use crate::{
 
 mod adaptation;
 mod grid;
+mod images;
 mod iterations;
 mod learner;
+mod squares;
 
 use adaptation::{Adaptation, Pass};
 use iterations::Together;

@@ -7,7 +7,7 @@ use super::Independent;
 /// Runs `job`, compiled for the machine at hand where the feature `simd` is on. The results are the same bits
 /// everywhere: nothing in a job is reordered or fused.
 #[inline(always)]
-pub(super) fn vectorised<R>(job: impl FnOnce() -> R) -> R {
+pub(crate) fn vectorised<R>(job: impl FnOnce() -> R) -> R {
     #[cfg(feature = "simd")]
     return pulp::Arch::new().dispatch(job);
     #[cfg(not(feature = "simd"))]

@@ -3,6 +3,7 @@
 use core::ops::Range;
 
 use super::{Stratum, Visited};
+use crate::evaluate::with_room;
 use crate::points::{Independent, PointSet, permuted};
 use crate::{Cursor, Error, NonFinite, Value, reduce};
 
@@ -123,70 +124,62 @@ impl Walk {
         policy: NonFinite,
         visitor: &mut T,
     ) -> Part<T::Value> {
-        let mut visit = self.ends.partition_point(|&end| end <= range.start);
+        let first = self.ends.partition_point(|&end| end <= range.start);
         let last = self.ends.partition_point(|&end| end < range.end);
         let mut part = Part {
             given: Given {
-                first: visit,
-                strata: vec![Stratum::EMPTY; (last + 1).saturating_sub(visit)],
+                first,
+                strata: Vec::with_capacity((last + 1).saturating_sub(first)),
                 left_out: Vec::new(),
             },
             offender: None,
         };
-        // Points without coordinates need rows all the same, if empty ones.
-        let width = rows.width as usize;
-        let stride = width.max(1);
-        let mut room = vec![0.0; rows.number * stride];
         let mut values = vec![T::Value::ZERO; rows.number];
-        let mut index = range.start;
-        while index < range.end && part.offender.is_none() {
-            // Batch by batch: coordinates, then values, then what they give in each stratum.
-            let left = range.end - index;
-            let number = usize::try_from(left).map_or(rows.number, |left| left.min(rows.number));
-            let (room, values) = (&mut room[..number * stride], &mut values[..number]);
-            rows.points
-                .fill(index, 0..rows.width, &mut room[..number * width]);
-            visitor.begin(number);
-            self.runs(visit, index, number, |visit, run| {
-                visitor.enter(self.order[visit] as usize);
-                visitor.place(run.start, &mut room[run.start * stride..run.end * stride]);
-            });
-            rows.evaluate(index, room, values, visitor);
-            visitor.leave();
-            visit = self.runs(visit, index, number, |visit, run| {
-                if part.offender.is_some() {
-                    return;
-                }
-                let first = index + run.start as u64;
-                let values = &mut values[run.clone()];
-                let given = Stratum::sums(values).or_else(|| {
-                    let kept = part.sort_out(first, visit, values, policy, |place| {
+        let mut runs = Vec::with_capacity(rows.number);
+        with_room(rows.number * rows.stride(), |room| {
+            let (mut index, mut visit) = (range.start, first);
+            while index < range.end && part.offender.is_none() {
+                // Batch by batch: coordinates, then values, then what they give in each stratum.
+                let left = range.end - index;
+                let number =
+                    usize::try_from(left).map_or(rows.number, |left| left.min(rows.number));
+                let room = &mut room[..number * rows.stride()];
+                let values = &mut values[..number];
+                rows.fill(index, room);
+                visit = self.runs(visit, index, number, &mut runs);
+                visitor.place(&runs, room);
+                rows.evaluate(index, room, values, visitor);
+                visitor.leave(values);
+                for run in &runs {
+                    let values = &mut values[run.points.clone()];
+                    if let Some(given) = Stratum::sums(values) {
+                        part.given.add(run.visit, &given);
+                        continue;
+                    }
+                    let first = index + run.points.start as u64;
+                    let kept = part.sort_out(first, run.visit, values, policy, |place| {
                         let at = first + place as u64;
-                        let place = run.start + place;
-                        let row = &room[place * stride..][..width];
+                        let place = run.points.start + place;
+                        let row = rows.row(room, place);
                         visitor.look(place, Cursor::with_prefix(&rows.points, at, row))
                     });
-                    (kept > 0).then(|| Stratum::of(&values[..kept]))
-                });
-                if let Some(given) = given {
-                    part.given.strata[visit - part.given.first].merge(&given);
+                    if kept > 0 {
+                        part.given.add(run.visit, &Stratum::of(&values[..kept]));
+                    }
+                    if part.offender.is_some() {
+                        break;
+                    }
                 }
-            });
-            index += number as u64;
-        }
+                index += number as u64;
+            }
+        });
         part
     }
 
-    /// Hands the parts of the `number` points from `index` on that are in one stratum to `take`, with their visits from `visit` on.
-    /// Which visit the point after them is in, or was the last.
-    #[inline]
-    fn runs(
-        &self,
-        mut visit: usize,
-        index: u64,
-        number: usize,
-        mut take: impl FnMut(usize, Range<usize>),
-    ) -> usize {
+    /// Finds the runs of the `number` points from `index` on, with their visits from `visit` on. Which visit the point after them
+    /// is in, or was the last.
+    fn runs(&self, mut visit: usize, index: u64, number: usize, runs: &mut Vec<Run>) -> usize {
+        runs.clear();
         let mut start = 0;
         while start < number {
             while self.ends[visit] <= index + start as u64 {
@@ -194,11 +187,22 @@ impl Walk {
             }
             let end = self.ends[visit] - index;
             let end = usize::try_from(end).map_or(number, |end| end.min(number));
-            take(visit, start..end);
+            runs.push(Run {
+                visit,
+                stratum: self.order[visit] as usize,
+                points: start..end,
+            });
             start = end;
         }
         visit
     }
+}
+
+/// Points of a batch that are in one stratum, one after the other.
+pub(crate) struct Run {
+    pub(crate) visit: usize,
+    pub(crate) stratum: usize,
+    pub(crate) points: Range<usize>,
 }
 
 /// How coordinates are computed ahead.
@@ -211,6 +215,24 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
+    /// How many numbers a row takes: points without coordinates have rows all the same, if of no meaning.
+    #[inline]
+    fn stride(&self) -> usize {
+        (self.width as usize).max(1)
+    }
+
+    /// The coordinates of one point.
+    fn row<'a>(&self, room: &'a [f64], place: usize) -> &'a [f64] {
+        &room[place * self.stride()..][..self.width as usize]
+    }
+
+    /// Writes the coordinates of the points from `first` on.
+    fn fill(&self, first: u64, room: &mut [f64]) {
+        if self.width > 0 {
+            self.points.fill(first, 0..self.width, room);
+        }
+    }
+
     /// The values at the points from `first` on, whose coordinates are in `room`. A function of its own, so that the machine's
     /// registers are for this loop.
     #[inline(never)]
@@ -221,11 +243,10 @@ impl Rows {
         values: &mut [T::Value],
         visitor: &mut T,
     ) {
-        let stride = (self.width as usize).max(1);
-        let rows = room.chunks_exact(stride).zip(first..);
-        for ((place, value), (row, index)) in values.iter_mut().enumerate().zip(rows) {
+        let rows = room.chunks_exact(self.stride());
+        for (place, (value, row)) in values.iter_mut().zip(rows).enumerate() {
             let row = &row[..self.width as usize];
-            let u = Cursor::with_row(&self.points, index, row, self.width);
+            let u = Cursor::with_row(&self.points, first + place as u64, row, self.width);
             *value = visitor.value(place, u);
         }
     }
@@ -235,20 +256,14 @@ impl Rows {
 pub(crate) trait Visitor {
     type Value: Value;
 
-    /// The next points are so many.
-    fn begin(&mut self, _number: usize) {}
+    /// Moves points, a row of coordinates each, from the unit cube into the strata of `runs`.
+    fn place(&mut self, runs: &[Run], rows: &mut [f64]);
 
-    /// The next of them are in `stratum`.
-    fn enter(&mut self, stratum: usize);
-
-    /// Moves points, a row of coordinates each, from the unit cube into the stratum: those from the `first` on.
-    fn place(&mut self, first: usize, rows: &mut [f64]);
-
-    /// The value at the point `place`, times the weight of the point.
+    /// The value at the point `place`.
     fn value(&mut self, place: usize, u: Cursor<'_, Independent>) -> Self::Value;
 
-    /// The values of all of them are known.
-    fn leave(&mut self) {}
+    /// The values of all of them are known: multiplies each by what its point weighs.
+    fn leave(&mut self, _values: &mut [Self::Value]) {}
 
     /// The same point once more.
     fn look(&mut self, place: usize, u: Cursor<'_, Independent>) -> Look<Self::Value>;
@@ -276,6 +291,20 @@ struct Given<V> {
     strata: Vec<Stratum<V>>,
     /// Visits and weights of the points whose values were left out.
     left_out: Vec<(usize, f64)>,
+}
+
+impl<V: Value> Given<V> {
+    /// Adds to what the stratum of `visit`, the last one or a later one, has given.
+    #[inline]
+    fn add(&mut self, visit: usize, more: &Stratum<V>) {
+        let place = visit - self.first;
+        if place >= self.strata.len() {
+            self.strata.resize(place, Stratum::EMPTY);
+            self.strata.push(*more);
+        } else {
+            self.strata[place].merge(more);
+        }
+    }
 }
 
 impl<V: Value> Part<V> {

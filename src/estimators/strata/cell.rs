@@ -4,7 +4,7 @@ use crate::block::smaller;
 use crate::evaluate::Wide;
 use crate::points::Independent;
 use crate::recorder::Recorder;
-use crate::stratum::{Look, Visitor};
+use crate::stratum::{Look, Run, Visitor};
 use crate::{Cursor, Integrand, Value};
 
 /// An integrand in one cell of a grid after the other.
@@ -39,23 +39,6 @@ impl<'a, I: Integrand> Cell<'a, I> {
         smaller(ALMOST_ONE, (place + u) * self.side)
     }
 
-    #[inline]
-    fn place_in<const AXES: usize>(&self, rows: &mut [f64]) {
-        let Some(&corner) = self.corner.first_chunk::<AXES>() else {
-            return;
-        };
-        for row in rows.chunks_exact_mut(self.width) {
-            let Some(row) = row.first_chunk_mut::<AXES>() else {
-                return;
-            };
-            *row = core::array::from_fn(|axis| self.confine(row[axis], corner[axis]));
-        }
-    }
-}
-
-impl<I: Integrand> Visitor for Cell<'_, I> {
-    type Value = Wide<I>;
-
     fn enter(&mut self, stratum: usize) {
         let mut rest = stratum as u64;
         for place in &mut self.corner {
@@ -64,20 +47,32 @@ impl<I: Integrand> Visitor for Cell<'_, I> {
         }
     }
 
-    #[inline]
-    fn place(&mut self, _: usize, rows: &mut [f64]) {
-        // Unrolled for the usual numbers of axes.
-        match self.corner.len() {
-            0 => {}
-            1 => self.place_in::<1>(rows),
-            2 => self.place_in::<2>(rows),
-            3 => self.place_in::<3>(rows),
-            _ => {
-                for row in rows.chunks_exact_mut(self.width) {
-                    for (u, &place) in row.iter_mut().zip(&self.corner) {
-                        *u = self.confine(*u, place);
-                    }
-                }
+    /// Moves points into the cell.
+    #[inline(always)]
+    fn confine_along(&self, axes: usize, rows: &mut [f64]) {
+        let corner = &self.corner[..axes];
+        for row in rows.chunks_exact_mut(self.width) {
+            for (u, &place) in row[..axes].iter_mut().zip(corner) {
+                *u = self.confine(*u, place);
+            }
+        }
+    }
+}
+
+impl<I: Integrand> Visitor for Cell<'_, I> {
+    type Value = Wide<I>;
+
+    fn place(&mut self, runs: &[Run], rows: &mut [f64]) {
+        for run in runs {
+            self.enter(run.stratum);
+            let rows = &mut rows[run.points.start * self.width..run.points.end * self.width];
+            // Unrolled for the usual numbers of axes.
+            match self.corner.len() {
+                0 => {}
+                1 => self.confine_along(1, rows),
+                2 => self.confine_along(2, rows),
+                3 => self.confine_along(3, rows),
+                axes => self.confine_along(axes, rows),
             }
         }
     }
@@ -110,10 +105,14 @@ mod tests {
     fn points_are_moved_into_their_cell_and_no_further() {
         let f = cube(|x: [f64; 3]| x);
         let mut cell = Cell::new(7, 2, 3, &f);
-        cell.enter(2 + 7 * 6);
+        let run = Run {
+            visit: 0,
+            stratum: 2 + 7 * 6,
+            points: 0..3,
+        };
         let most = 1.0 - f64::EPSILON / 2.0;
         let mut rows = [0.0, 0.0, 0.25, 0.5, 0.5, 0.5, most, most, most];
-        cell.place(0, &mut rows);
+        cell.place(&[run], &mut rows);
         let expected = [2.0, 6.0, 1.75, 2.5, 6.5, 3.5, 3.0, 7.0, 7.0].map(|x| x / 7.0);
         for (x, expected) in rows.into_iter().zip(expected) {
             assert!(

@@ -1,7 +1,8 @@
 //! What VEGAS adapts, and how it learns.
 
 use super::grid::Grid;
-use super::learner::{Learner, Squares};
+use super::learner::Learner;
+use super::squares::Squares;
 use crate::evaluate::Wide;
 use crate::integrands::ImportanceMap;
 use crate::points::{Independent, PointSet};
@@ -124,7 +125,7 @@ impl<V: Value> Adaptation<V> {
             |range| {
                 let mut learner = Learner::new(self, integrand, &bins);
                 let part = walk.evaluate(range, &rows, policy, &mut learner);
-                (part, learner.squares)
+                (part, learner.squares())
             },
             |part: Vec<Squares>| {
                 for (here, there) in squares.iter_mut().zip(&part) {

@@ -18,8 +18,9 @@ pub(crate) fn in_order<T: Send, E: Send>(
     job: impl Fn(u64) -> T + Sync,
     mut take: impl FnMut(T) -> Result<(), E> + Send,
 ) -> Result<(), E> {
-    if count == 1 {
-        return take(job(0));
+    // One after the other each is taken at once, with what it holds in the nearest caches.
+    if count == 1 || threads() == 1 {
+        return (0..count).try_for_each(|index| take(job(index)));
     }
     let mut outcome = Ok(());
     inside(&mut || {
@@ -57,13 +58,17 @@ pub fn each<T: Send>(count: u64, job: impl Fn(u64) -> T + Sync) -> Vec<T> {
 
 // Work and jobs are behind pointers, so that what runs them is compiled once, not for every integrand.
 
-/// Runs `work` on a thread of rayon's current pool, so that its waves need not change threads each; a pool of one thread
-/// has nothing to offer over the caller's.
+/// How many jobs can run at a time.
+fn threads() -> usize {
+    #[cfg(feature = "parallel")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "parallel"))]
+    1
+}
+
+/// Runs `work` on a thread of rayon's current pool, so that its waves need not change threads each.
 #[cfg(feature = "parallel")]
 fn inside(work: &mut (dyn FnMut() + Send)) {
-    if rayon::current_num_threads() == 1 {
-        return work();
-    }
     rayon::scope(|_| work());
 }
 
@@ -76,7 +81,7 @@ fn inside(work: &mut (dyn FnMut() + Send)) {
 /// for a type of values.
 #[cfg(feature = "parallel")]
 fn wave<T: Send>(jobs: Range<u64>, job: &(dyn Fn(u64) -> T + Sync)) -> Vec<T> {
-    if rayon::current_num_threads() == 1 {
+    if threads() == 1 {
         return jobs.map(job).collect();
     }
     let length = usize::try_from(jobs.end - jobs.start).expect("results that memory can hold");

@@ -260,8 +260,7 @@ impl<'a, I: Integrand> Fast<'a, I> {
         }
     }
 
-    /// Adds the first values of the room to the block. A function of its own: within the loop over points the machine would
-    /// have no registers for the sums.
+    /// Adds the first values of the room to the block. A function of its own, in which the lanes of the sums stay together.
     #[inline(never)]
     fn add(&mut self, count: usize) {
         self.block.extend(&self.values[..count], Value::widen);

@@ -167,7 +167,7 @@ fn adaptive_samples() {
 #[test]
 fn adaptive_nets() {
     let (view, size) = (scenes::cornell_box(), [128; 2]);
-    let ours = Batches::new(32, 12, |batch| {
+    let ours = Batches::new(32, 8, |batch| {
         let seed = hash(20, batch);
         let part = |skip| {
             let points = |key| Ok(Skipped::new(Rescrambled::new(4, key)?, skip));

@@ -50,7 +50,8 @@ struct Arguments {
     #[arg(long, value_enum, value_name = "SET")]
     points: Option<Points>,
     /// Into how many independent renders the samples of --spp are split, whose spread gives the error: 16 with --std-error, otherwise 2 if the
-    /// points are a finite set. Sequences are rendered in two parts, which tell of more noise than there is, by a seventh or so
+    /// points are a finite set. Sequences are rendered in two parts, which tell of more noise than there is, by a seventh or so. With --adaptive the first
+    /// samples are two renders of their own, and there are at least three
     #[arg(long, value_name = "N", conflicts_with_all = ["time", "noise"], value_parser = clap::value_parser!(u64).range(1..))]
     replicates: Option<u64>,
     /// Selects the randomisation of the points
@@ -69,7 +70,8 @@ struct Arguments {
     #[arg(long, value_name = "FILE.exr")]
     reference: Option<PathBuf>,
     /// Takes more samples where the picture varies more, as the first ones of the pixels around show: 16 in every pixel with --time and --noise,
-    /// otherwise an eighth of all, but a power of two from 2 to 64
+    /// otherwise an eighth of all, but a power of two from 2 to 64. --spp is the mean over the picture then, at least 2. Not with blue noise, which
+    /// has as many points in every pixel
     #[arg(long)]
     adaptive: bool,
     /// Ends paths by Russian roulette as a pilot of so many paths a pixel, in at most 128 x 128 pixels and twice over, shows that it pays
@@ -157,6 +159,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         }
     }
 
+    let of_the_file = description.sensors[0].sampler.sample_count.into();
+    let plan = Plan::new(arguments, points, of_the_file)?;
     let start = Instant::now();
     if let Some(count) = arguments.learn_roulette {
         // Paths of its own, not those of the picture.
@@ -165,8 +169,6 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     let pilot_seconds = start.elapsed().as_secs_f64();
 
-    let of_the_file = description.sensors[0].sampler.sample_count.into();
-    let plan = Plan::new(arguments, points, of_the_file)?;
     let checkpoint = arguments.checkpoint.as_deref().map(|file| {
         Checkpoint::new(
             file,

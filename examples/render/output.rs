@@ -25,6 +25,10 @@ pub(crate) struct Report<'a> {
 pub(crate) struct Work {
     pub(crate) image: Image,
     pub(crate) paths: u64,
+    /// Whether samples were dealt to the pixels, as the first ones told.
+    pub(crate) dealt: bool,
+    /// How many pixels are black because no path of them was finite.
+    pub(crate) without_value: u64,
     /// How many of the paths were not finite and are left out.
     pub(crate) rejected: u64,
     pub(crate) seconds: f64,
@@ -37,6 +41,8 @@ impl Work {
         Ok(Self {
             image: state.image()?,
             paths: state.paths,
+            dealt: state.allocation.is_some(),
+            without_value: state.without_value(),
             rejected: state.rejected,
             seconds: state.seconds,
             noise: state.noise(),
@@ -124,6 +130,7 @@ fn figures(
         "left_out": report.left_out,
         "coordinates_per_path": job.coordinates_per_path(),
         "rejected": work.rejected,
+        "dealt": work.dealt,
         "noise": work.noise,
         "rmse": rmse.transpose()?,
         "relative_mse": relative.transpose()?,
@@ -145,6 +152,9 @@ fn summary(report: &Report<'_>, pictures: &[PathBuf]) {
     }
     if work.rejected > 0 {
         println!("{} paths were not finite and are left out", work.rejected);
+    }
+    if work.without_value > 0 {
+        println!("{} pixels have no others and are black", work.without_value);
     }
     for file in pictures {
         println!("{}", file.display());

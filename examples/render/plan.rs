@@ -103,7 +103,11 @@ impl Plan {
             false => spp,
         };
         sizes.extend(match (arguments.adaptive, goes_on) {
-            (true, true) => vec![dealt],
+            // Halves of all, as below.
+            (true, true) => {
+                let half = (spp / 2).max(first);
+                vec![half - first, spp - half]
+            }
             (true, false) => parts(dealt, replicates.saturating_sub(2).max(1)),
             // Of which the first is the smaller.
             (false, true) => vec![dealt / 2, dealt.div_ceil(2)],
@@ -152,6 +156,14 @@ impl Plan {
                 let left = time.as_secs_f64() - seconds;
                 let fitting = left * done as f64 / seconds.max(1e-9);
                 let mut samples = doubled;
+                // Not beyond those after which the others are dealt.
+                if let Some(more) = self
+                    .first
+                    .and_then(|first| first.checked_sub(done))
+                    .filter(|&more| more > 0)
+                {
+                    samples = samples.min(more);
+                }
                 while samples > 1 && samples as f64 > fitting {
                     samples /= 2;
                 }
@@ -243,6 +255,11 @@ mod tests {
                     assert_eq!(done, spp, "{points}");
                     assert_eq!(first.is_some(), adaptive);
                     if let Some(first) = first {
+                        if goes_on && spp >= 4 {
+                            // Halves, as near as can be.
+                            let last = passes.last().unwrap();
+                            assert!(last.count() == spp.div_ceil(2), "{points} {spp} {passes:?}");
+                        }
                         // Two parts, of which errors are told.
                         assert_eq!(
                             [0, 1].map(|pass: usize| passes[pass].count()),
@@ -270,6 +287,12 @@ mod tests {
         assert_eq!(done, 1000);
         let plan = self::plan(&["--time", "10", "--std-error", "x.exr"], Points::Sobol);
         assert!(!plan.goes_on && !plan.tells_by_halves());
+        let plan = self::plan(&["--time", "10", "--adaptive"], Points::Rescrambled);
+        // A cut pass is not to lead past the first samples.
+        let pass = plan.next(4, 9, 5.0, None).unwrap();
+        assert_eq!(pass.samples, 9..16);
+        assert_eq!(plan.next(4, 15, 5.0, None).unwrap().samples, 15..16);
+        assert_eq!(plan.next(4, 16, 5.0, None).unwrap().samples, 16..32);
         let plan = self::plan(&["--time", "10", "--adaptive"], Points::NRooks);
         assert!(!plan.goes_on && plan.tells_by_halves());
         assert_eq!(plan.first, Some(FIRST));

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use estimand::mitsuba::Picture;
 use estimand::path::{Allocation, Share};
 use estimand::points::PointSet;
-use estimand::{each, hash};
+use estimand::{Incomplete, each, hash};
 
 use crate::checkpoint::Checkpoint;
 use crate::plan::{Pass, Plan};
@@ -75,7 +75,7 @@ impl Job<'_> {
             let Some(pass) = lock(state).begin(|state| self.next(state)) else {
                 return Ok(());
             };
-            let counts = self.counts(&mut lock(state), &pass)?;
+            let counts = self.counts(state, &pass)?;
             let rows = each(self.size[1].into(), |y| self.row(y, &pass, &counts, state));
             lock(state).seconds = before + start.elapsed().as_secs_f64();
             if rows
@@ -91,27 +91,32 @@ impl Job<'_> {
     }
 
     /// How many samples the pixels are to have after a pass: if they are dealt, as the first ones tell.
-    fn counts(&self, state: &mut State, pass: &Pass) -> Result<Counts, String> {
+    fn counts(&self, state: &Mutex<State>, pass: &Pass) -> Result<Counts, String> {
         let mean = pass.samples.end;
-        let Some(first) = self.plan.first.filter(|&first| state.samples >= first) else {
+        let allocation = {
+            let mut state = lock(state);
+            let first = self.plan.first.filter(|&first| state.samples == first);
+            if let Some(first) = first.filter(|_| state.allocation.is_none()) {
+                let allocation = (state.image()).and_then(|image| Allocation::new(&image, first));
+                state.allocation = Some(allocation.map_err(|e| e.to_string())?);
+            }
+            state.allocation.clone()
+        };
+        let Some(allocation) = allocation else {
             return Ok(Counts::Same(mean));
         };
-        if state.allocation.is_none() {
-            let allocation = (state.image()).and_then(|image| Allocation::new(&image, first));
-            state.allocation = Some(allocation.map_err(|e| e.to_string())?);
-        }
-        let some = self.points.of_pixel([0, 0], self.seed, mean);
         // Sets of their own have any numbers: only all of them together have those that are dealt.
-        let radix = some
-            .map_err(|e| e.to_string())?
-            .radix()
-            .filter(|_| self.plan.goes_on);
-        let allocation = state.allocation.iter();
-        let counts = allocation.flat_map(|allocation| match radix {
+        let radix = match self.plan.goes_on {
+            true => {
+                let some = self.points.of_pixel([0, 0], self.seed, mean);
+                some.map_err(|e| e.to_string())?.radix()
+            }
+            false => None,
+        };
+        Ok(Counts::Each(match radix {
             Some(radix) => allocation.powers(mean, radix),
             None => allocation.counts(mean),
-        });
-        Ok(Counts::Each(counts.collect()))
+        }))
     }
 
     /// The next pass.
@@ -143,10 +148,10 @@ impl Job<'_> {
         let before: Vec<_> = {
             let state = lock(state);
             let columns = 0..self.size[0];
-            columns.map(|x| state.samples_of([x, y])).collect()
+            columns.map(|x| state.points_of([x, y])).collect()
         };
         let mut row = Row {
-            mean: vec![[0.0; 3]; width],
+            mean: vec![None; width],
             samples: vec![0; width],
             ..Row::default()
         };
@@ -182,10 +187,22 @@ impl Job<'_> {
                 .collect();
             let outcomes = self.picture.averages(self.size, &shares);
             for (outcome, [x, y]) in outcomes.into_iter().zip(some.iter().map(|some| some.0)) {
-                let estimate = outcome.map_err(|e| format!("pixel ({x}, {y}): {e}"))?;
-                row.mean[x as usize] = estimate.mean.to_array();
-                row.paths += estimate.used;
-                row.rejected += estimate.rejected;
+                match outcome {
+                    Ok(estimate) => {
+                        row.mean[x as usize] = Some(estimate.mean.to_array());
+                        row.paths += estimate.used;
+                        row.rejected += estimate.rejected;
+                    }
+                    // Other passes may have some.
+                    Err(Incomplete {
+                        reason: estimand::Error::NothingLeft { rejected },
+                        ..
+                    }) => {
+                        row.paths += rejected;
+                        row.rejected += rejected;
+                    }
+                    Err(error) => return Err(format!("pixel ({x}, {y}): {error}")),
+                }
             }
         }
         lock(state).add(at, row);

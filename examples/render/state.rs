@@ -31,6 +31,9 @@ pub(crate) struct State {
 /// A pixel after some passes.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 struct Pixel {
+    /// How many points were used up.
+    points: u64,
+    /// How many samples there are: fewer, where a part had no finite value.
     samples: u64,
     /// The mean over them.
     mean: [f64; 3],
@@ -42,7 +45,8 @@ struct Pixel {
 /// A row of a pass.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct Row {
-    pub(crate) mean: Vec<[f64; 3]>,
+    /// Of each pixel, unless it has no sample in the pass, or none that is finite.
+    pub(crate) mean: Vec<Option<[f64; 3]>>,
     /// How many samples the pixels have in it.
     pub(crate) samples: Vec<u64>,
     pub(crate) paths: u64,
@@ -52,10 +56,11 @@ pub(crate) struct Row {
 impl Pixel {
     /// With some more samples. Where they are as many as those before and tell `by_halves`, the parts of those before are forgotten: they
     /// were too small to tell of it.
-    fn add(&mut self, samples: u64, value: [f64; 3], by_halves: bool) {
-        if samples == 0 {
+    fn add(&mut self, samples: u64, value: Option<[f64; 3]>, by_halves: bool) {
+        self.points += samples;
+        let Some(value) = value else {
             return;
-        }
+        };
         if by_halves && samples >= self.samples {
             self.deviation = [0.0; 3];
             self.parts = self.parts.min(1);
@@ -106,9 +111,15 @@ impl State {
             && self.pass.as_ref().is_none_or(Pass::is_sound)
     }
 
-    /// How many samples a pixel has.
-    pub(crate) fn samples_of(&self, [x, y]: [u32; 2]) -> u64 {
-        self.pixels[y as usize * self.width + x as usize].samples
+    /// How many points of a pixel are used up.
+    pub(crate) fn points_of(&self, [x, y]: [u32; 2]) -> u64 {
+        self.pixels[y as usize * self.width + x as usize].points
+    }
+
+    /// How many pixels have points, and no finite value at any.
+    pub(crate) fn without_value(&self) -> u64 {
+        let none = |pixel: &&Pixel| pixel.points > 0 && pixel.samples == 0;
+        self.pixels.iter().filter(none).count() as u64
     }
 
     /// The pass that was begun, or the next one, which is begun then.
@@ -148,14 +159,16 @@ impl State {
         }
     }
 
-    /// The root-mean-square error of the pixels over the mean, as estimated; `None` before all have two parts.
+    /// The root-mean-square error of the pixels over the mean, as estimated, of those that have two parts; `None` before there are any.
     pub(crate) fn noise(&self) -> Option<f64> {
-        let (mut squares, mut sum) = (0.0, 0.0);
+        let (mut squares, mut sum, mut count) = (0.0, 0.0, 0.0);
         for pixel in &self.pixels {
-            squares += pixel.squared_errors()?.iter().sum::<f64>();
-            sum += pixel.mean.iter().sum::<f64>();
+            if let Some(errors) = pixel.squared_errors() {
+                squares += errors.iter().sum::<f64>();
+                sum += pixel.mean.iter().sum::<f64>();
+                count += 3.0;
+            }
         }
-        let count = (3 * self.pixels.len()) as f64;
         let noise = (squares / count).sqrt() / (sum / count).abs();
         noise.is_finite().then_some(noise)
     }
@@ -167,18 +180,19 @@ impl State {
         if self.passes == 0 {
             for (row, pixels) in self.rows.iter().zip(pixels.chunks_mut(self.width)) {
                 let values = row.iter().flat_map(|row| &row.mean);
-                for (pixel, &value) in pixels.iter_mut().zip(values) {
-                    *pixel = DVec3::from(value);
+                for (pixel, value) in pixels.iter_mut().zip(values) {
+                    *pixel = value.map_or(DVec3::ZERO, DVec3::from);
                 }
             }
         }
         let image = Image::new(self.width, pixels)?;
-        let root = |squares: [f64; 3]| DVec3::from(squares.map(f64::sqrt));
-        let errors = self.pixels.iter().map(Pixel::squared_errors);
-        match errors.map(|squares| squares.map(root)).collect() {
-            Some(errors) => image.with_std_error(Image::new(self.width, errors)?),
-            None => Ok(image),
+        let known = || self.pixels.iter().map(Pixel::squared_errors);
+        if known().all(|squares| squares.is_none()) {
+            return Ok(image);
         }
+        let root = |squares: [f64; 3]| DVec3::from(squares.map(f64::sqrt));
+        let errors = known().map(|squares| squares.map_or(DVec3::INFINITY, root));
+        image.with_std_error(Image::new(self.width, errors.collect())?)
     }
 }
 
@@ -189,7 +203,7 @@ mod tests {
     /// With a pass of a row of one pixel.
     fn after(state: &mut State, samples: u64, value: f64, by_halves: bool) {
         let row = Row {
-            mean: vec![[value; 3]],
+            mean: vec![(samples > 0).then_some([value; 3])],
             samples: vec![samples],
             ..Row::default()
         };
@@ -210,7 +224,7 @@ mod tests {
         }
         // 5 in the mean of the first two, 3 of the other two.
         assert_eq!((state.passes, state.samples, parts(&state)), (3, 4, 3));
-        assert_eq!(state.samples_of([0, 0]), 4);
+        assert_eq!(state.points_of([0, 0]), 4);
         let mut halves = state.clone();
         after(&mut halves, 4, 6.0, true);
         // 4 before, 6 now.
@@ -219,11 +233,34 @@ mod tests {
         after(&mut halves, 2, 5.0, true);
         assert_eq!(parts(&halves), 3);
         after(&mut halves, 0, 0.0, true);
-        assert_eq!((parts(&halves), halves.samples_of([0, 0])), (3, 10));
+        assert_eq!((parts(&halves), halves.points_of([0, 0])), (3, 10));
         assert_eq!(halves.image().unwrap().pixels()[0], DVec3::splat(5.0));
         // Parts of 4, 4 and 2 with the values 4, 6 and 5: 8 over 2 times 10.
         let error = halves.image().unwrap().std_error().unwrap().pixels()[0];
         assert!((error - DVec3::splat(0.4_f64.sqrt())).length() < 1e-15);
+    }
+
+    #[test]
+    fn a_pixel_without_a_finite_value_uses_its_points_and_is_told_of() {
+        let mut state = State::new([2, 1]);
+        for values in [[Some([1.0; 3]), None], [Some([3.0; 3]), None]] {
+            let row = Row {
+                mean: values.to_vec(),
+                samples: vec![1, 1],
+                paths: 2,
+                rejected: 1,
+            };
+            state.add(0, row);
+            state.complete(1, true);
+        }
+        assert_eq!([0, 1].map(|x| state.points_of([x, 0])), [2, 2]);
+        assert_eq!((state.without_value(), state.rejected), (1, 2));
+        // Of the other one.
+        assert_eq!(state.noise(), Some(0.5));
+        let image = state.image().unwrap();
+        assert_eq!(image.pixels(), [DVec3::splat(2.0), DVec3::ZERO]);
+        let errors = image.std_error().unwrap();
+        assert_eq!(errors.pixels(), [DVec3::ONE, DVec3::INFINITY]);
     }
 
     #[test]
@@ -235,7 +272,7 @@ mod tests {
         let mut state = State::new([1, 2]);
         assert_eq!(state.begin(|_| Some(pass(4))), Some(pass(4)));
         let row = Row {
-            mean: vec![[1.0; 3]],
+            mean: vec![Some([1.0; 3])],
             samples: vec![4],
             paths: 4,
             rejected: 0,

@@ -65,13 +65,15 @@ impl Adaptive {
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F> {
     /// The picture with more samples where it varies more: `estimator` makes an estimator of a pixel from a seed and a number of samples, for
     /// the first samples and, apart, for those that are added; none is asked for a single one. The picture has the mean of both, weighted by their
-    /// numbers, and its standard errors are those of both. Over all pixels there are as many samples as `adaptive` says, to a thousandth or so.
+    /// numbers, and its standard errors are those of both. Over all pixels there are as many samples as `adaptive` says, but for a few, and where
+    /// [`Allocation::counts`] leaves some.
     ///
     /// For nets take [`Allocation`]: their points are better together.
     ///
     /// # Errors
     ///
-    /// As [`render`](Self::render), and [`Error::Refused`] for an estimator without standard errors.
+    /// As [`render`](Self::render), and [`Error::Refused`] for an estimator without standard errors. Once the first samples are there,
+    /// [`Unfinished::image`] is the whole picture that they make, whatever stops those that are added.
     pub fn render_adaptive<T: Estimator>(
         &self,
         size: [u32; 2],
@@ -81,13 +83,16 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     ) -> Result<Adapted, Unfinished> {
         let Adaptive { count, first } = adaptive;
         let picture = self.render(size, seed, |key| estimator(key, first))?;
-        let mut samples = Allocation::new(&picture, first)?.counts(count);
-        for (pixel, count) in samples.iter_mut().enumerate() {
-            // A single one would tell of no error: half of such pixels get two, the others none.
-            if *count == first + 1 {
-                *count = first + pixel as u64 / 2 % 2 * 2;
+        let allocation = match Allocation::new(&picture, first) {
+            Ok(allocation) => allocation,
+            Err(reason) => {
+                return Err(Unfinished {
+                    image: Some(Box::new(picture)),
+                    ..Unfinished::from(reason)
+                });
             }
-        }
+        };
+        let samples = allocation.counts_without_single_ones(count);
         let added = Image::of_pixels(size, hash::hash(seed, ADDED), |[x, y], key| {
             let count = samples[y as usize * size[0] as usize + x as usize] - first;
             if count == 0 {
@@ -96,7 +101,16 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
                 return Ok(nothing);
             }
             estimator(key, count).estimate(&self.pixel([x, y], size))
-        })?;
+        });
+        let added = match added {
+            Ok(added) => added,
+            Err(unfinished) => {
+                return Err(Unfinished {
+                    image: Some(Box::new(picture)),
+                    ..unfinished
+                });
+            }
+        };
         let weights = |pixel: usize| [first, samples[pixel] - first].map(|count| count as f64);
         let image = picture.joined(&added, weights);
         Ok(Adapted { image, samples })
@@ -111,7 +125,7 @@ mod tests {
     use super::*;
     use crate::path::scenes;
     use crate::points::{Independent, pixel};
-    use crate::{Average, MonteCarlo};
+    use crate::{Average, MonteCarlo, Replicated};
 
     fn plain(key: u64, count: u64) -> MonteCarlo {
         MonteCarlo::new(count, key)
@@ -143,8 +157,18 @@ mod tests {
         let without = view.render_adaptive([3, 3], 1, all_first, |key, count| {
             Average::new(Independent::new(key), count)
         });
-        let message = without.unwrap_err().to_string();
+        let without = without.unwrap_err();
+        let message = without.to_string();
         assert!(message.contains("standard errors"), "{message}");
+        assert_eq!(without.image.unwrap().used(), 18);
+        let two = Adaptive::new(8, 2).unwrap();
+        let stopped = view.render_adaptive([3, 3], 1, two, |key, count| {
+            let replicates = if count == 2 { 2 } else { 0 };
+            Replicated::new(replicates, 1, Independent::new).seed(key)
+        });
+        let stopped = stopped.unwrap_err();
+        assert!(stopped.position.is_some());
+        assert_eq!(stopped.image.unwrap().used(), 18);
         assert!(
             view.render_adaptive([0, 4], 1, all_first, plain)
                 .unwrap_err()

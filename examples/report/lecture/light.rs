@@ -371,8 +371,8 @@ fn adaptive(studio: &Studio<'_>) -> Result<Vec<Claim>, Failure> {
     let own = studio.measure(|seed| {
         Image::of_pixels(size, seed, |position, key| {
             let pixel = view.pixel(position, size);
-            let pilot = MonteCarlo::new(8, key).estimate(&pixel)?;
-            let error = pilot
+            let first = MonteCarlo::new(8, key).estimate(&pixel)?;
+            let error = first
                 .std_error
                 .map_or(0.0, |error| error.length() / 3_f64.sqrt());
             #[expect(
@@ -381,7 +381,7 @@ fn adaptive(studio: &Studio<'_>) -> Result<Vec<Claim>, Failure> {
                 reason = "clamped to counts"
             )]
             let count = (SPP as f64 * 4.0 * error / scale).clamp(8.0, 1024.0) as u64;
-            // The same seed: the first eight are those of the pilot.
+            // The same seed: the first eight are those that decided.
             MonteCarlo::new(count, key).estimate(&pixel)
         })
     })?;

@@ -37,12 +37,22 @@ pub(crate) struct Pass {
     pub(crate) number: u64,
     /// How many samples a pixel has before and after it, in the mean over the pixels.
     pub(crate) samples: Range<u64>,
+    /// Whether those within the first half of all that a pixel has after it are told apart from the others.
+    pub(crate) halved: bool,
 }
 
 impl Pass {
     /// Whether it is one that a plan can have made.
     pub(crate) fn is_sound(&self) -> bool {
         self.samples.start <= self.samples.end
+    }
+
+    /// How many of its samples are told apart, in a pixel that has so many before and after it.
+    pub(crate) fn cut(&self, samples: Range<u64>) -> u64 {
+        match self.halved {
+            true => (samples.end / 2).saturating_sub(samples.start),
+            false => 0,
+        }
     }
 
     /// How many samples it has, in the mean over the pixels.
@@ -57,6 +67,9 @@ const MOST: u64 = 64;
 /// How many samples every pixel gets before the others are dealt where their number is not known beforehand, and the most where it is.
 const FIRST: u64 = 16;
 const MOST_OF_FIRST: u64 = 64;
+
+/// Up to so many samples a sequence is rendered in one pass, or in two where samples are dealt: a pixel is visited once, in the place of twice.
+const AT_ONCE: u64 = 256;
 
 /// The fewest passes that tell of an error.
 const FEWEST: u64 = 4;
@@ -94,23 +107,23 @@ impl Plan {
             None => 2,
         });
         let mut sizes = Vec::new();
-        // Two parts of the first samples tell of their errors.
         let dealt = match arguments.adaptive {
+            // Two parts of the first samples tell of their errors.
             true => {
-                sizes.extend([first / 2; 2]);
+                match goes_on {
+                    true => sizes.push(first),
+                    false => sizes.extend([first / 2; 2]),
+                }
                 spp - first
             }
             false => spp,
         };
+        let halved = goes_on && spp <= AT_ONCE;
         sizes.extend(match (arguments.adaptive, goes_on) {
-            // Halves of all, as below.
-            (true, true) => {
-                let half = (spp / 2).max(first);
-                vec![half - first, spp - half]
-            }
+            (_, true) if halved => vec![dealt],
+            // The first half of all, of which the first samples are a part.
+            (_, true) => vec![spp / 2 - (spp - dealt), spp.div_ceil(2)],
             (true, false) => parts(dealt, replicates.saturating_sub(2).max(1)),
-            // Of which the first is the smaller.
-            (false, true) => vec![dealt / 2, dealt.div_ceil(2)],
             (false, false) if points.are_powers_of_two() => {
                 let parts = parts(dealt, replicates);
                 parts.into_iter().flat_map(powers).collect()
@@ -125,6 +138,8 @@ impl Plan {
             Pass {
                 number,
                 samples: before..done,
+                // The first samples always tell of their errors.
+                halved: halved || goes_on && arguments.adaptive && done == first,
             }
         };
         let passes = (0..).zip(sizes).map(pass).collect();
@@ -143,6 +158,7 @@ impl Plan {
         let after = |samples| Pass {
             number: passes,
             samples: done..done + samples,
+            halved: false,
         };
         // A power of two, so that passes are nets.
         let doubled = 1 << done.clamp(1, MOST).ilog2();
@@ -254,17 +270,28 @@ mod tests {
                     }
                     assert_eq!(done, spp, "{points}");
                     assert_eq!(first.is_some(), adaptive);
-                    if let Some(first) = first {
-                        if goes_on && spp >= 4 {
-                            // Halves, as near as can be.
-                            let last = passes.last().unwrap();
-                            assert!(last.count() == spp.div_ceil(2), "{points} {spp} {passes:?}");
-                        }
-                        // Two parts, of which errors are told.
-                        assert_eq!(
-                            [0, 1].map(|pass: usize| passes[pass].count()),
-                            [first / 2; 2]
+                    if goes_on {
+                        // Halves, as near as can be.
+                        let last = passes.last().unwrap();
+                        let other = last.count() - last.cut(last.samples.clone());
+                        assert!(
+                            other == spp.div_ceil(2) || spp < 4,
+                            "{points} {spp} {passes:?}"
                         );
+                    }
+                    if let Some(first) = first {
+                        // Two parts, of which errors are told.
+                        if goes_on {
+                            assert_eq!(
+                                (passes[0].count(), passes[0].cut(0..first)),
+                                (first, first / 2)
+                            );
+                        } else {
+                            assert_eq!(
+                                [0, 1].map(|pass: usize| passes[pass].count()),
+                                [first / 2; 2]
+                            );
+                        }
                         assert!(first == 2 || 8 * first <= spp && first.is_power_of_two());
                     }
                 }

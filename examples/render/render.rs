@@ -8,13 +8,14 @@ use std::time::{Duration, Instant};
 use estimand::mitsuba::Picture;
 use estimand::path::{Allocation, Share};
 use estimand::points::PointSet;
-use estimand::{Incomplete, each, hash};
+use estimand::{Estimate, Incomplete, each, hash};
+use glam::DVec3;
 
 use crate::checkpoint::Checkpoint;
 use crate::plan::{Pass, Plan};
 use crate::points::Points;
 use crate::progress::Progress;
-use crate::state::{Row, State};
+use crate::state::{Part, Row, State};
 
 /// How often the bar is drawn.
 const TICK: Duration = Duration::from_millis(100);
@@ -26,6 +27,9 @@ const SAVE_RATIO: u32 = 20;
 /// How many paths of neighbouring pixels are asked for at once, about: many, since lanes are idle at their end, but few enough for
 /// Ctrl-C not to wait.
 const ASKED: u64 = 4096;
+
+/// The mean of a part of a pixel.
+type Outcome = Result<Estimate<DVec3>, Incomplete<DVec3>>;
 
 /// A picture to be rendered.
 pub(crate) struct Job<'a> {
@@ -151,8 +155,7 @@ impl Job<'_> {
             columns.map(|x| state.points_of([x, y])).collect()
         };
         let mut row = Row {
-            mean: vec![None; width],
-            samples: vec![0; width],
+            pixels: vec![[Part::default(); 2]; width],
             ..Row::default()
         };
         let mut x = 0;
@@ -163,17 +166,23 @@ impl Job<'_> {
             let mut some = Vec::new();
             let mut paths = 0;
             while x < width && paths < ASKED {
-                let count = counts.of(at * width + x).saturating_sub(before[x]);
+                let end = counts.of(at * width + x).max(before[x]);
+                let count = end - before[x];
                 if count > 0 {
                     #[expect(clippy::cast_possible_truncation, reason = "the width is a u32")]
                     let position = [x as u32, y];
                     let part = match self.plan.goes_on {
-                        true => before[x]..before[x] + count,
+                        true => before[x]..end,
                         false => 0..count,
                     };
                     let points = self.points.of_part(position, seed, count, part);
                     some.push((position, points.map_err(|e| e.to_string())?, count));
-                    row.samples[x] = count;
+                    let cut = pass.cut(before[x]..end);
+                    let samples = [cut, count - cut];
+                    row.pixels[x] = samples.map(|samples| Part {
+                        samples,
+                        mean: None,
+                    });
                 }
                 paths = paths.saturating_add(count);
                 x += 1;
@@ -185,28 +194,53 @@ impl Job<'_> {
                     count: *count,
                 })
                 .collect();
-            let outcomes = self.picture.averages(self.size, &shares);
-            for (outcome, [x, y]) in outcomes.into_iter().zip(some.iter().map(|some| some.0)) {
-                match outcome {
-                    Ok(estimate) => {
-                        row.mean[x as usize] = Some(estimate.mean.to_array());
-                        row.paths += estimate.used;
-                        row.rejected += estimate.rejected;
+            for (share, outcomes) in shares.iter().zip(self.parts(&shares, &row)) {
+                let [x, y] = share.position;
+                for (part, outcome) in row.pixels[x as usize].iter_mut().zip(outcomes) {
+                    match outcome {
+                        None => {}
+                        Some(Ok(estimate)) => {
+                            part.mean = Some(estimate.mean.to_array());
+                            row.paths += estimate.used;
+                            row.rejected += estimate.rejected;
+                        }
+                        // Other parts may have some.
+                        Some(Err(Incomplete {
+                            reason: estimand::Error::NothingLeft { rejected },
+                            ..
+                        })) => {
+                            row.paths += rejected;
+                            row.rejected += rejected;
+                        }
+                        Some(Err(error)) => return Err(format!("pixel ({x}, {y}): {error}")),
                     }
-                    // Other passes may have some.
-                    Err(Incomplete {
-                        reason: estimand::Error::NothingLeft { rejected },
-                        ..
-                    }) => {
-                        row.paths += rejected;
-                        row.rejected += rejected;
-                    }
-                    Err(error) => return Err(format!("pixel ({x}, {y}): {error}")),
                 }
             }
         }
         lock(state).add(at, row);
         Ok(true)
+    }
+
+    /// The means of the parts that the pixels have in a row.
+    fn parts(&self, shares: &[Share<&dyn PointSet>], row: &Row) -> Vec<[Option<Outcome>; 2]> {
+        let cut = |share: &Share<&dyn PointSet>| row.pixels[share.position[0] as usize][0].samples;
+        if shares.iter().all(|share| cut(share) == 0) {
+            let outcomes = self.picture.averages(self.size, shares);
+            return outcomes
+                .into_iter()
+                .map(|outcome| [None, Some(outcome)])
+                .collect();
+        }
+        let outcomes = self.picture.averages_in_two(self.size, shares, &cut);
+        let parts = shares.iter().zip(outcomes);
+        parts
+            .map(|(share, [first, others])| {
+                [
+                    (cut(share) > 0).then_some(first),
+                    (cut(share) < share.count).then_some(others),
+                ]
+            })
+            .collect()
     }
 
     /// Shows the progress and saves the work from time to time, until it is finished.

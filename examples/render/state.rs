@@ -45,20 +45,26 @@ struct Pixel {
 /// A row of a pass.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct Row {
-    /// Of each pixel, unless it has no sample in the pass, or none that is finite.
-    pub(crate) mean: Vec<Option<[f64; 3]>>,
-    /// How many samples the pixels have in it.
-    pub(crate) samples: Vec<u64>,
+    pub(crate) pixels: Vec<[Part; 2]>,
     pub(crate) paths: u64,
     pub(crate) rejected: u64,
+}
+
+/// Some samples of a pixel.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+pub(crate) struct Part {
+    pub(crate) samples: u64,
+    /// Over them, if any is finite.
+    pub(crate) mean: Option<[f64; 3]>,
 }
 
 impl Pixel {
     /// With some more samples. Where they are as many as those before and tell `by_halves`, the parts of those before are forgotten: they
     /// were too small to tell of it.
-    fn add(&mut self, samples: u64, value: Option<[f64; 3]>, by_halves: bool) {
+    fn add(&mut self, part: Part, by_halves: bool) {
+        let samples = part.samples;
         self.points += samples;
-        let Some(value) = value else {
+        let Some(value) = part.mean else {
             return;
         };
         if by_halves && samples >= self.samples {
@@ -103,7 +109,7 @@ impl State {
     /// Whether it is of a picture of that size, and all there.
     pub(crate) fn is_of(&self, [width, height]: [u32; 2]) -> bool {
         let [width, height] = [width as usize, height as usize];
-        let of_width = |row: &Row| [row.mean.len(), row.samples.len()] == [width; 2];
+        let of_width = |row: &Row| row.pixels.len() == width;
         self.width == width
             && self.rows.len() == height
             && self.pixels.len() == width * height
@@ -153,8 +159,10 @@ impl State {
         let rows = self.rows.iter_mut().map(Option::take);
         for (row, pixels) in rows.zip(self.pixels.chunks_mut(self.width)) {
             let row = row.unwrap_or_default();
-            for ((pixel, samples), value) in pixels.iter_mut().zip(row.samples).zip(row.mean) {
-                pixel.add(samples, value, by_halves);
+            for (pixel, parts) in pixels.iter_mut().zip(row.pixels) {
+                for part in parts {
+                    pixel.add(part, by_halves);
+                }
             }
         }
     }
@@ -179,9 +187,13 @@ impl State {
         let mut pixels: Vec<_> = pixels.collect();
         if self.passes == 0 {
             for (row, pixels) in self.rows.iter().zip(pixels.chunks_mut(self.width)) {
-                let values = row.iter().flat_map(|row| &row.mean);
-                for (pixel, value) in pixels.iter_mut().zip(values) {
-                    *pixel = value.map_or(DVec3::ZERO, DVec3::from);
+                let there = row.iter().flat_map(|row| &row.pixels);
+                for (pixel, parts) in pixels.iter_mut().zip(there) {
+                    let mut whole = Pixel::default();
+                    for &part in parts {
+                        whole.add(part, false);
+                    }
+                    *pixel = DVec3::from(whole.mean);
                 }
             }
         }
@@ -200,11 +212,17 @@ impl State {
 mod tests {
     use super::*;
 
+    fn part(samples: u64, value: f64) -> Part {
+        Part {
+            samples,
+            mean: (samples > 0).then_some([value; 3]),
+        }
+    }
+
     /// With a pass of a row of one pixel.
     fn after(state: &mut State, samples: u64, value: f64, by_halves: bool) {
         let row = Row {
-            mean: vec![(samples > 0).then_some([value; 3])],
-            samples: vec![samples],
+            pixels: vec![[Part::default(), part(samples, value)]],
             ..Row::default()
         };
         state.add(0, row);
@@ -243,16 +261,19 @@ mod tests {
     #[test]
     fn a_pixel_without_a_finite_value_uses_its_points_and_is_told_of() {
         let mut state = State::new([2, 1]);
-        for values in [[Some([1.0; 3]), None], [Some([3.0; 3]), None]] {
-            let row = Row {
-                mean: values.to_vec(),
-                samples: vec![1, 1],
-                paths: 2,
-                rejected: 1,
-            };
-            state.add(0, row);
-            state.complete(1, true);
-        }
+        let nothing = Part {
+            samples: 1,
+            mean: None,
+        };
+        let row = Row {
+            pixels: vec![[part(1, 1.0), part(1, 3.0)], [nothing; 2]],
+            paths: 4,
+            rejected: 2,
+        };
+        state.add(0, row);
+        let begun = state.image().unwrap();
+        assert_eq!(begun.pixels(), [DVec3::splat(2.0), DVec3::ZERO]);
+        state.complete(2, true);
         assert_eq!([0, 1].map(|x| state.points_of([x, 0])), [2, 2]);
         assert_eq!((state.without_value(), state.rejected), (1, 2));
         // Of the other one.
@@ -268,12 +289,12 @@ mod tests {
         let pass = |first| Pass {
             number: 1,
             samples: first..8,
+            halved: false,
         };
         let mut state = State::new([1, 2]);
         assert_eq!(state.begin(|_| Some(pass(4))), Some(pass(4)));
         let row = Row {
-            mean: vec![Some([1.0; 3])],
-            samples: vec![4],
+            pixels: vec![[part(2, 1.0); 2]],
             paths: 4,
             rejected: 0,
         };

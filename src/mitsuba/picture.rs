@@ -41,6 +41,18 @@ pub trait Picture: Sync + fmt::Debug {
         shares: &[Share<&dyn PointSet>],
     ) -> Vec<Result<Estimate<DVec3>, Incomplete<DVec3>>>;
 
+    /// The same for the first points of each share, as many as `cut` says, and the others apart: see [`View::averages_in_two`].
+    ///
+    /// # Errors
+    ///
+    /// As there.
+    fn averages_in_two(
+        &self,
+        size: [u32; 2],
+        shares: &[Share<&dyn PointSet>],
+        cut: &dyn Fn(&Share<&dyn PointSet>) -> u64,
+    ) -> Vec<[Result<Estimate<DVec3>, Incomplete<DVec3>>; 2]>;
+
     /// Ends paths by Russian roulette as it pays in this picture: see [`View::learn_roulette`].
     ///
     /// # Errors
@@ -84,6 +96,15 @@ where
         shares: &[Share<&dyn PointSet>],
     ) -> Vec<Result<Estimate<DVec3>, Incomplete<DVec3>>> {
         self.averages(size, shares, NonFinite::Reject)
+    }
+
+    fn averages_in_two(
+        &self,
+        size: [u32; 2],
+        shares: &[Share<&dyn PointSet>],
+        cut: &dyn Fn(&Share<&dyn PointSet>) -> u64,
+    ) -> Vec<[Result<Estimate<DVec3>, Incomplete<DVec3>>; 2]> {
+        self.averages_in_two(size, shares, cut, NonFinite::Reject)
     }
 
     fn learn_roulette(&mut self, size: [u32; 2], count: u64, seed: u64) -> Result<(), Error> {

@@ -5,7 +5,7 @@ use super::bsdf::Bsdf;
 use super::filter::Filter;
 use super::light::{Environment, Light};
 use super::sensor::Sensor;
-use crate::points::PointSet;
+use crate::points::{PointSet, Skipped};
 use crate::{Average, Estimator, NonFinite, Outcome};
 use glam::Vec3;
 #[cfg(feature = "simd")]
@@ -13,7 +13,7 @@ use {
     super::packet::Packet,
     crate::block::Block,
     crate::estimators::whole,
-    crate::evaluate::BLOCK,
+    crate::evaluate::{BLOCK, with_room},
     crate::tallied::Tallied,
     crate::tally::Tally,
     crate::{Cursor, Estimate, Integrand, Value},
@@ -71,12 +71,101 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         shares: &[Share<P>],
         rule: NonFinite,
     ) -> Vec<Outcome<Vec3>> {
+        self.each(size, shares, |share, values| {
+            self.mean(size, share, values, rule)
+        })
+    }
+
+    /// The means over the first points of each share, `cut` of them, and over the others apart: two [`averages`](Self::averages) in the time
+    /// of one, for what they differ by.
+    ///
+    /// ```
+    /// use estimand::NonFinite;
+    /// use estimand::path::{Share, scenes};
+    /// use estimand::points::Rescrambled;
+    ///
+    /// let (view, size) = (scenes::cornell_box(), [16, 16]);
+    /// let share = Share { position: [3, 9], points: Rescrambled::new(4, 1)?, count: 12 };
+    /// let [[first, others]] = &view.averages_in_two(size, &[share], |_| 8, NonFinite::Fail)[..] else {
+    ///     panic!("one share has two means");
+    /// };
+    /// let [first, others] = [first.as_ref().unwrap(), others.as_ref().unwrap()];
+    /// let all = &view.averages(size, &[share], NonFinite::Fail)[0].as_ref().unwrap().mean;
+    /// assert!(((first.mean * 8.0 + others.mean * 4.0) / 12.0 - *all).length() < 1e-15);
+    /// # Ok::<(), estimand::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Each part has its own: that of [`Average`], also for no points.
+    ///
+    /// # Panics
+    ///
+    /// If a cut is above the count, or a finite set is not asked for whole.
+    pub fn averages_in_two<P: PointSet>(
+        &self,
+        size: [u32; 2],
+        shares: &[Share<P>],
+        cut: impl Fn(&Share<P>) -> u64,
+        rule: NonFinite,
+    ) -> Vec<[Outcome<Vec3>; 2]> {
+        self.each(size, shares, |share, values| {
+            let cut = cut(share);
+            let (position, points) = (share.position, &share.points);
+            assert!(cut <= share.count && points.size().is_none_or(|size| size == share.count));
+            let parts = [
+                Share {
+                    position,
+                    points: Skipped::new(points, 0),
+                    count: cut,
+                },
+                Share {
+                    position,
+                    points: Skipped::new(points, cut),
+                    count: share.count - cut,
+                },
+            ];
+            let values = values.map(|values| {
+                let (first, others) = values.split_at(usize::try_from(cut).unwrap_or(usize::MAX));
+                [first, others]
+            });
+            core::array::from_fn(|part| {
+                let values = values.map(|values| values[part]);
+                self.mean(size, &parts[part], values, rule)
+            })
+        })
+    }
+
+    /// What `tell` makes of each share and the values at its points, if it has few.
+    fn each<P: PointSet, T>(
+        &self,
+        size: [u32; 2],
+        shares: &[Share<P>],
+        tell: impl Fn(&Share<P>, Option<&[Vec3]>) -> T,
+    ) -> Vec<T> {
         #[cfg(feature = "simd")]
         if let Some(packet) = self.pixel([0; 2], size).packet() {
-            return self.together(packet, size, shares, rule);
+            return self.together(packet, size, shares, tell);
         }
-        let alone = |share: &Share<P>| self.alone(size, share, rule);
-        shares.iter().map(alone).collect()
+        shares.iter().map(|share| tell(share, None)).collect()
+    }
+
+    /// The mean over a share, of which the values may be there.
+    fn mean<P: PointSet>(
+        &self,
+        size: [u32; 2],
+        share: &Share<P>,
+        values: Option<&[Vec3]>,
+        rule: NonFinite,
+    ) -> Outcome<Vec3> {
+        #[cfg(feature = "simd")]
+        // What plain arithmetic does not do is left to the estimator.
+        if let Some(estimate) = values.and_then(|values| share.of_values(values, rule)) {
+            return Ok(estimate);
+        }
+        #[cfg(not(feature = "simd"))]
+        let _ = values;
+        self.alone(size, share, rule)
     }
 
     fn alone<P: PointSet>(
@@ -98,16 +187,16 @@ const TOGETHER: usize = 512;
 
 #[cfg(feature = "simd")]
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F> {
-    /// [`averages`](Self::averages) in lanes.
-    fn together<P: PointSet>(
+    /// [`each`](Self::each) in lanes.
+    fn together<P: PointSet, T>(
         &self,
         packet: &Packet,
         size: [u32; 2],
         mut shares: &[Share<P>],
-        rule: NonFinite,
-    ) -> Vec<Outcome<Vec3>> {
+        tell: impl Fn(&Share<P>, Option<&[Vec3]>) -> T,
+    ) -> Vec<T> {
         let mut outcomes = Vec::with_capacity(shares.len());
-        let (mut ahead, mut values) = (Vec::new(), Vec::new());
+        let mut values = Vec::new();
         while !shares.is_empty() {
             let mut points = 0;
             let mut more = |share: &Share<P>| {
@@ -117,57 +206,54 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
             };
             let end = shares.iter().take_while(|share| more(share)).count();
             let (batch, rest) = shares.split_at(end);
-            self.follow(packet, size, batch, &mut ahead, &mut values);
+            self.follow(packet, size, batch, &mut values);
             let mut given = &values[..];
             outcomes.extend(batch.iter().map(|share| {
                 let (own, others) = given.split_at(few(share));
                 given = others;
-                // What plain arithmetic does not do is left to the estimator.
-                share
-                    .of_values(own, rule)
-                    .map_or_else(|| self.alone(size, share, rule), Ok)
+                tell(share, (!own.is_empty()).then_some(own))
             }));
             shares = rest;
         }
         outcomes
     }
 
-    /// The values at the points of all shares that have few. `ahead` is room for coordinates.
+    /// The values at the points of all shares that have few.
     fn follow<P: PointSet>(
         &self,
         packet: &Packet,
         size: [u32; 2],
         shares: &[Share<P>],
-        ahead: &mut Vec<f64>,
         values: &mut Vec<Vec3>,
     ) {
         // Any pixel will do for all that is asked but where paths begin.
         let any = self.pixel([0; 2], size);
         let width = |share: &Share<P>| any.dimensions().min(share.points.dimensions());
         let rows = |share: &Share<P>| few(share) * width(share) as usize;
-        // What was there before is written over.
-        ahead.resize(shares.iter().map(rows).sum::<usize>().max(ahead.len()), 0.0);
-        let mut free = &mut ahead[..];
-        for share in shares {
-            let (own, others) = free.split_at_mut(rows(share));
-            share.points.fill(0, 0..width(share), own);
-            free = others;
-        }
-        let (mut samplers, mut pixels) = (Vec::new(), Vec::new());
-        let mut left = &ahead[..];
-        for share in shares {
-            let width = width(share) as usize;
-            for index in 0..few(share) {
-                let (row, others) = left.split_at(width);
-                left = others;
-                samplers.push(Cursor::with_prefix(&share.points, index as u64, row));
-                pixels.push(share.position);
+        let length = shares.iter().map(rows).sum();
+        with_room(length, |ahead| {
+            let mut free = &mut *ahead;
+            for share in shares {
+                let (own, others) = free.split_at_mut(rows(share));
+                share.points.fill(0, 0..width(share), own);
+                free = others;
             }
-        }
-        values.clear();
-        values.resize(samplers.len(), Vec3::ZERO);
-        let start = |point: usize, u: &mut _| self.pixel(pixels[point], size).start(u);
-        packet.radiance(self.paths, &any, &start, &mut samplers, values);
+            let (mut samplers, mut pixels) = (Vec::new(), Vec::new());
+            let mut left = &*ahead;
+            for share in shares {
+                let width = width(share) as usize;
+                for index in 0..few(share) {
+                    let (row, others) = left.split_at(width);
+                    left = others;
+                    samplers.push(Cursor::with_prefix(&share.points, index as u64, row));
+                    pixels.push(share.position);
+                }
+            }
+            values.clear();
+            values.resize(samplers.len(), Vec3::ZERO);
+            let start = |point: usize, u: &mut _| self.pixel(pixels[point], size).start(u);
+            packet.radiance(self.paths, &any, &start, &mut samplers, values);
+        });
     }
 }
 
@@ -245,6 +331,49 @@ mod tests {
             view.averages(size, &[] as &[Share<Independent>], NonFinite::Fail)
                 .is_empty()
         );
+    }
+
+    #[test]
+    fn two_parts_are_as_they_are_alone() {
+        let (view, size) = (scenes::cornell_box(), [9, 1]);
+        let mut lit = scenes::cornell_box();
+        // Such paths are followed one by one.
+        lit.paths = lit.paths.hiding_lights();
+        let shares: Vec<_> = (0..9_u32)
+            .map(|x| Share {
+                position: [x, 0],
+                points: Rescrambled::new(4, x.into()).unwrap(),
+                count: COUNTS[x as usize],
+            })
+            .collect();
+        for view in [view, lit] {
+            for share in &shares {
+                for cut in [0, share.count / 2, share.count / 3, share.count] {
+                    let two = view.averages_in_two(size, &[*share], |_| cut, NonFinite::Fail);
+                    let parts = [(0, cut), (cut, share.count - cut)];
+                    for (mut outcome, (skip, count)) in two.into_iter().flatten().zip(parts) {
+                        let points = Skipped::new(share.points, skip);
+                        let part = Share {
+                            position: share.position,
+                            points,
+                            count,
+                        };
+                        let mut alone = view.alone(size, &part, NonFinite::Fail);
+                        assert_eq!(alone.is_err(), count == 0);
+                        for outcome in [&mut outcome, &mut alone].into_iter().flatten() {
+                            outcome.seconds = 0.0;
+                        }
+                        assert_eq!(outcome, alone, "{} {cut}", share.count);
+                    }
+                }
+            }
+            let cut = |share: &Share<_>| share.count / 2;
+            assert_eq!(
+                view.averages_in_two(size, &shares, cut, NonFinite::Fail)
+                    .len(),
+                9
+            );
+        }
     }
 
     /// Sees nothing of the column 2, and cannot say so; in the column 4 it is too bright for squares.

@@ -130,6 +130,7 @@ fn figures(
         "left_out": report.left_out,
         "coordinates_per_path": job.coordinates_per_path(),
         "rejected": work.rejected,
+        "without_value": work.without_value,
         "dealt": work.dealt,
         "noise": work.noise,
         "rmse": rmse.transpose()?,

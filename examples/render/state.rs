@@ -114,7 +114,9 @@ impl State {
             && self.rows.len() == height
             && self.pixels.len() == width * height
             && self.rows.iter().flatten().all(of_width)
+            && (self.pass.is_some() || self.rows.iter().all(Option::is_none))
             && self.pass.as_ref().is_none_or(Pass::is_sound)
+            && (self.allocation.as_ref()).is_none_or(|dealt| dealt.size() == [width, height])
     }
 
     /// How many points of a pixel are used up.
@@ -124,8 +126,21 @@ impl State {
 
     /// How many pixels have points, and no finite value at any.
     pub(crate) fn without_value(&self) -> u64 {
-        let none = |pixel: &&Pixel| pixel.points > 0 && pixel.samples == 0;
-        self.pixels.iter().filter(none).count() as u64
+        let none = |pixel: &Pixel| pixel.points > 0 && pixel.samples == 0;
+        self.seen().filter(none).count() as u64
+    }
+
+    /// The pixels after all complete passes, or with the rows of the first one.
+    fn seen(&self) -> impl Iterator<Item = Pixel> {
+        self.pixels.iter().enumerate().map(|(place, pixel)| {
+            let mut pixel = *pixel;
+            if let (0, Some(row)) = (self.passes, &self.rows[place / self.width]) {
+                for part in row.pixels[place % self.width] {
+                    pixel.add(part, false);
+                }
+            }
+            pixel
+        })
     }
 
     /// The pass that was begun, or the next one, which is begun then.
@@ -183,21 +198,8 @@ impl State {
 
     /// The picture: of complete passes, or of the rows of the first one, black elsewhere.
     pub(crate) fn image(&self) -> Result<Image, Error> {
-        let pixels = self.pixels.iter().map(|pixel| DVec3::from(pixel.mean));
-        let mut pixels: Vec<_> = pixels.collect();
-        if self.passes == 0 {
-            for (row, pixels) in self.rows.iter().zip(pixels.chunks_mut(self.width)) {
-                let there = row.iter().flat_map(|row| &row.pixels);
-                for (pixel, parts) in pixels.iter_mut().zip(there) {
-                    let mut whole = Pixel::default();
-                    for &part in parts {
-                        whole.add(part, false);
-                    }
-                    *pixel = DVec3::from(whole.mean);
-                }
-            }
-        }
-        let image = Image::new(self.width, pixels)?;
+        let pixels = self.seen().map(|pixel| DVec3::from(pixel.mean));
+        let image = Image::new(self.width, pixels.collect())?;
         let known = || self.pixels.iter().map(Pixel::squared_errors);
         if known().all(|squares| squares.is_none()) {
             return Ok(image);
@@ -273,6 +275,7 @@ mod tests {
         state.add(0, row);
         let begun = state.image().unwrap();
         assert_eq!(begun.pixels(), [DVec3::splat(2.0), DVec3::ZERO]);
+        assert_eq!((state.without_value(), begun.std_error()), (1, None));
         state.complete(2, true);
         assert_eq!([0, 1].map(|x| state.points_of([x, 0])), [2, 2]);
         assert_eq!((state.without_value(), state.rejected), (1, 2));
@@ -307,8 +310,24 @@ mod tests {
         assert_eq!(resumed.begin(|_| None), None);
         resumed.pass = Some(pass(9));
         assert!(!resumed.is_of([1, 2]));
-        resumed.pass = None;
+        resumed.pass = Some(pass(4));
+        assert!(resumed.is_of([1, 2]));
         resumed.rows[0] = Some(Row::default());
         assert!(!resumed.is_of([1, 2]));
+        resumed.rows[0] = Some(Row {
+            pixels: vec![[part(2, 1.0); 2]],
+            ..Row::default()
+        });
+        assert!(resumed.is_of([1, 2]));
+        // Rows are of a pass.
+        resumed.pass = None;
+        assert!(!resumed.is_of([1, 2]));
+        resumed.rows[0] = None;
+        for (pixels, fits) in [(2, true), (3, false)] {
+            let ones = || Image::new(1, vec![DVec3::ONE; pixels]).unwrap();
+            let image = ones().with_std_error(ones()).unwrap();
+            resumed.allocation = Some(Allocation::new(&image, 2).unwrap());
+            assert_eq!(resumed.is_of([1, 2]), fits);
+        }
     }
 }

@@ -46,6 +46,10 @@ pub trait Picture: Sync + fmt::Debug {
     /// # Errors
     ///
     /// As there.
+    ///
+    /// # Panics
+    ///
+    /// As there.
     fn averages_in_two(
         &self,
         size: [u32; 2],

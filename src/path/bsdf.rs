@@ -89,7 +89,8 @@ pub trait Bsdf: Sync {
     }
 
     /// Whether it is [`Lambertian`] wherever the surface is hit, the same everywhere or not: then [`lambertian_at`](Self::lambertian_at) tells
-    /// which, and where many paths are traced at once the law is asked for that alone.
+    /// which, at every point, and where many paths are traced at once the law is asked for that alone. So [`evaluate`](Self::evaluate) and
+    /// [`sample`](Self::sample) must do what that does, by the normal that [`as_lambertian`](Self::as_lambertian) says.
     fn is_lambertian(&self) -> bool {
         self.as_lambertian().is_some()
     }

@@ -48,8 +48,9 @@ pub(in crate::path) struct Packet {
     around: Vec3A,
     triangles: bool,
     slanted_lights: bool,
+    /// Whether any law may be black on the inner side.
     one_sided: bool,
-    /// Whether any ideally diffuse law is another from point to point.
+    /// Whether any ideally diffuse law may be another from point to point: its albedo is asked for lane by lane.
     varying: bool,
     /// Whether any law is another than the ideally diffuse one.
     others: bool,

@@ -97,7 +97,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     ///
     /// # Errors
     ///
-    /// Each part has its own: that of [`Average`], also for no points.
+    /// Each part has its own: that of [`Average`], also for no points. Neither says where its number of points is no power of the radix of its set.
     ///
     /// # Panics
     ///
@@ -109,10 +109,17 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         cut: impl Fn(&Share<P>) -> u64,
         rule: NonFinite,
     ) -> Vec<[Outcome<Vec3>; 2]> {
+        for share in shares {
+            let (cut, count) = (cut(share), share.count);
+            let whole = share
+                .points
+                .size()
+                .is_none_or(|size| size == count || count == 0);
+            assert!(cut <= count && whole, "{count} points cut at {cut}");
+        }
         self.each(size, shares, |share, values| {
             let cut = cut(share);
             let (position, points) = (share.position, &share.points);
-            assert!(cut <= share.count && points.size().is_none_or(|size| size == share.count));
             let parts = [
                 Share {
                     position,
@@ -147,6 +154,8 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         if let Some(packet) = self.pixel([0; 2], size).packet() {
             return self.together(packet, size, shares, tell);
         }
+        #[cfg(not(feature = "simd"))]
+        let _ = size;
         shares.iter().map(|share| tell(share, None)).collect()
     }
 
@@ -367,12 +376,17 @@ mod tests {
                     }
                 }
             }
+            // Several are as one.
             let cut = |share: &Share<_>| share.count / 2;
-            assert_eq!(
-                view.averages_in_two(size, &shares, cut, NonFinite::Fail)
-                    .len(),
-                9
-            );
+            let means = |shares: &[_]| -> Vec<_> {
+                let outcomes = view.averages_in_two(size, shares, cut, NonFinite::Fail);
+                let means = outcomes.into_iter().flatten();
+                means
+                    .map(|outcome| outcome.ok().map(|estimate| estimate.mean))
+                    .collect()
+            };
+            let singly: Vec<_> = shares.iter().flat_map(|&share| means(&[share])).collect();
+            assert_eq!((means(&shares), singly.len()), (singly, 18));
         }
     }
 

@@ -130,21 +130,15 @@ impl PointSet for Rescrambled {
                     let axis = self.matrices.len() - axes.len();
                     // As many at once as make whole vectors.
                     axes = if let Some((four, others)) = axes.split_first_chunk::<4>() {
-                        let made;
-                        let table = if axis == 0 {
-                            FIRST_FOUR.get_or_init(|| combinations(four))
-                        } else {
-                            made = combinations(four);
-                            &made
-                        };
-                        self.fill_axes(four, table, axis, &mut block);
+                        let first =
+                            (axis == 0).then(|| FIRST_FOUR.get_or_init(|| combinations(four)));
+                        self.fill_axes(four, first, axis, &mut block);
                         others
                     } else if let Some((two, others)) = axes.split_first_chunk::<2>() {
-                        self.fill_axes(two, &combinations(two), axis, &mut block);
+                        self.fill_axes(two, None, axis, &mut block);
                         others
                     } else {
-                        let one = &[axes[0]];
-                        self.fill_axes(one, &combinations(one), axis, &mut block);
+                        self.fill_axes(&[axes[0]], None, axis, &mut block);
                         &axes[1..]
                     };
                 }
@@ -179,13 +173,13 @@ const PLACES: [Ending; POINTS] = {
 const BITS: usize = POINTS.ilog2() as usize;
 
 impl Rescrambled {
-    /// Writes the coordinates in the dimensions from `axis` on, `N` of them, of every group of the block. `table` has the
-    /// [`combinations`] of the matrices.
+    /// Writes the coordinates in the dimensions from `axis` on, `N` of them, of every group of the block. The
+    /// [`combinations`] of the matrices may be known.
     #[inline(always)]
     fn fill_axes<const N: usize>(
         &self,
         matrices: &[Columns; N],
-        table: &[[u64; N]; POINTS],
+        known: Option<&[[u64; N]; POINTS]>,
         axis: usize,
         block: &mut Block<'_>,
     ) {
@@ -194,6 +188,7 @@ impl Rescrambled {
             block.dimensions.start as usize,
             block.dimensions.end as usize,
         );
+        let mut made = None;
         let mut words = [[0; N]; POINTS];
         let mut coordinates = [[0.0; N]; POINTS];
         for group in start / width..end.div_ceil(width) {
@@ -203,6 +198,7 @@ impl Rescrambled {
             if asked.is_empty() {
                 continue;
             }
+            let table = known.unwrap_or_else(|| made.get_or_insert_with(|| combinations(matrices)));
             let key = hash(self.seed, group as u64);
             let keys: [u64; LANES] = core::array::from_fn(|lane| axis_key(key, axis + lane % N));
 
@@ -256,7 +252,7 @@ impl Rescrambled {
     }
 }
 
-/// The table of the dimensions that groups of four have, which takes as long to make as the coordinates of a few points.
+/// The table of the first four dimensions, which takes as long to make as the coordinates of a few points.
 static FIRST_FOUR: OnceLock<[[u64; 4]; POINTS]> = OnceLock::new();
 
 /// The place of a point in its aligned block.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::attributes::Attributes;
-use super::needs::is_lambertian;
+use super::needs::is_constant_diffuse;
 use super::surroundings::narrow;
 use crate::mitsuba::{
     self, BitmapFilter, Bsdf, Conductor, Dielectric, Perturbed, Plastic, Roughness, Texture,
@@ -145,7 +145,7 @@ struct Maker<'a, 's> {
 
 impl Maker<'_, '_> {
     fn material<P: Value>(&mut self, bsdf: &Bsdf) -> Result<Material<P>, String> {
-        if is_lambertian(bsdf) {
+        if is_constant_diffuse(bsdf) {
             return Lambertian::make(bsdf, self.sources).map(Into::into);
         }
         let refused = |e: crate::Error| e.to_string();

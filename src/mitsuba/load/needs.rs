@@ -73,7 +73,7 @@ impl Needs {
         let is_sky = matches!(surroundings.background, Background::Sky(_));
         Self {
             shading: solids().any(|solid| solid.surface.is_smooth() || varies(&solid.shape.bsdf)),
-            materials: !solids().all(|solid| is_lambertian(&solid.shape.bsdf)),
+            materials: !solids().all(|solid| is_constant_diffuse(&solid.shape.bsdf)),
             lights: Lights::of(pieces),
             surroundings: is_sky || !surroundings.sources.is_empty(),
             constant: matches!(surroundings.background, Background::Constant(_)),
@@ -103,7 +103,7 @@ impl Needs {
 }
 
 /// Whether it is ideally diffuse with one colour, on the outer side or alike on both.
-pub(super) fn is_lambertian(bsdf: &Bsdf) -> bool {
+pub(super) fn is_constant_diffuse(bsdf: &Bsdf) -> bool {
     match bsdf {
         Bsdf::Diffuse {
             reflectance: Texture::Constant(_),

@@ -73,7 +73,8 @@ impl TryFrom<Saved> for Allocation {
         let of_colour = |own: usize| (0..pixels).filter(move |&pixel| colour(pixel, width) == own);
         let fits = whole
             && COLOURS.map(|own| of_colour(own).count()) == deviations.each_ref().map(Vec::len);
-        let sound = (deviations.iter().flatten()).all(|deviation| (0.0..=1.0).contains(deviation));
+        let in_range = |&deviation: &f64| deviation == 0.0 || (1e-300..=1.0).contains(&deviation);
+        let sound = deviations.iter().flatten().all(in_range);
         match fits && sound {
             true => Ok(Self {
                 deviations,
@@ -85,7 +86,7 @@ impl TryFrom<Saved> for Allocation {
     }
 }
 
-/// The most that a pixel gets, in parts of the mean.
+/// The most that a pixel gets, in multiples of the mean.
 const MOST: f64 = 64.0;
 
 impl Allocation {
@@ -136,6 +137,12 @@ impl Allocation {
             width,
             first,
         }
+    }
+
+    /// The width and the height of the picture, in pixels.
+    pub fn size(&self) -> [usize; 2] {
+        let pixels: usize = self.deviations.iter().map(Vec::len).sum();
+        [self.width, pixels / self.width]
     }
 
     /// How many samples each pixel gets, row by row, the first ones included, `mean` in the mean, but no pixel less than it has: in proportion to the
@@ -395,6 +402,7 @@ mod tests {
     #[test]
     fn what_is_saved_comes_back_unless_it_is_damaged() {
         let allocation = Allocation::of(&[1.0, 0.3, 0.0, 0.7, 0.2, 0.9], 3, 4);
+        assert_eq!(allocation.size(), [3, 2]);
         let saved = serde_json::to_string(&allocation).unwrap();
         assert_eq!(
             serde_json::from_str::<Allocation>(&saved).unwrap(),
@@ -405,6 +413,7 @@ mod tests {
             ("\"width\":3", "\"width\":4"),
             ("\"first\":4", "\"first\":0"),
             ("[1.0,", "[1.5,"),
+            ("[1.0,", "[1e-310,"),
             ("[1.0,", "["),
         ] {
             assert!(saved.contains(from), "{saved}");

@@ -29,9 +29,7 @@ impl<P: Parameter> Diffuse<P> {
             reflectance: texture::fraction("reflectance", reflectance)?,
         })
     }
-}
 
-impl<P: Parameter> Diffuse<P> {
     /// What it is at a place.
     #[inline]
     pub(super) fn lambertian(&self, place: &P::Place) -> Lambertian {

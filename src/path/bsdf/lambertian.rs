@@ -9,7 +9,7 @@ use crate::path::frame::{Frame, cosine_density, cosine_hemisphere, singles};
 use crate::path::{Surface, color};
 use crate::{Error, Sampler};
 
-/// Ideally diffuse reflection on both sides: the function is `albedo / pi` where both directions are on the same
+/// Ideally diffuse reflection on both sides, or on the [outer](Self::outside) one: the function is `albedo / pi` where both directions are on the same
 /// side.
 ///
 /// Two coordinates draw a direction, with the density `cosine / pi`.

@@ -248,7 +248,13 @@ impl Hits<'_> {
     pub(super) fn lambertian<U>(&self, single: &dyn Single<U>, active: &Row<f32>) -> Weights {
         Weights::of(active, |lane| match single.lambertian(&self.hit(lane)) {
             Some(law) => (law.albedo, f32::from(u8::from(law.has_inside()))),
-            None => (Vec3A::ZERO, 0.0),
+            None => {
+                debug_assert!(
+                    false,
+                    "a law that is ideally diffuse tells how at every point"
+                );
+                (Vec3A::ZERO, 0.0)
+            }
         })
     }
 

@@ -86,12 +86,12 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     ///
     /// let (view, size) = (scenes::cornell_box(), [16, 16]);
     /// let share = Share { position: [3, 9], points: Rescrambled::new(4, 1)?, count: 12 };
-    /// let [[first, others]] = &view.averages_in_two(size, &[share], |_| 8, NonFinite::Fail)[..] else {
-    ///     panic!("one share has two means");
+    /// let means = view.averages_in_two(size, &[share], |_| 8, NonFinite::Fail);
+    /// let [Ok(first), Ok(others)] = &means[0] else {
+    ///     panic!("both parts have values");
     /// };
-    /// let [first, others] = [first.as_ref().unwrap(), others.as_ref().unwrap()];
-    /// let all = &view.averages(size, &[share], NonFinite::Fail)[0].as_ref().unwrap().mean;
-    /// assert!(((first.mean * 8.0 + others.mean * 4.0) / 12.0 - *all).length() < 1e-15);
+    /// let all = view.averages(size, &[share], NonFinite::Fail).remove(0).unwrap();
+    /// assert!(((first.mean * 8.0 + others.mean * 4.0) / 12.0 - all.mean).length() < 1e-15);
     /// # Ok::<(), estimand::Error>(())
     /// ```
     ///

@@ -1,11 +1,11 @@
 //! The loop over points: one block at a time, fast if its values are ordinary, carefully if not.
 
-use core::cell::Cell;
 use core::ops::{ControlFlow, Range};
 
 use crate::block::Block;
 use crate::points::PointSet;
 use crate::recorder::Recorder;
+use crate::room::with_room;
 use crate::tally::{Open, Piece, Tally};
 use crate::{Cursor, Error, Integrand, NonFinite, Sampler, Value, reduce};
 
@@ -37,23 +37,6 @@ pub(crate) trait Visit {
 
 /// Coordinates computed ahead per call of `fill`: 32 KiB, which the first-level cache holds.
 const AHEAD: usize = 4096;
-
-thread_local! {
-    /// The room for those, kept for the next block of the thread: a pixel of few samples would spend more time on
-    /// making it than on using it. An integrand that runs an estimator of its own finds it taken, and makes another.
-    static ROOM: Cell<Vec<f64>> = const { Cell::new(Vec::new()) };
-}
-
-/// Runs `job` with room for `length` coordinates, which hold anything.
-pub(crate) fn with_room<R>(length: usize, job: impl FnOnce(&mut [f64]) -> R) -> R {
-    let mut room = ROOM.take();
-    if room.len() < length {
-        room.resize(length, 0.0);
-    }
-    let result = job(&mut room[..length]);
-    ROOM.set(room);
-    result
-}
 
 impl<P: PointSet> Source for P {
     fn points(&self, indices: Range<u64>, _: u64, dimensions: u32, visit: &mut impl Visit) {

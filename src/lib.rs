@@ -111,6 +111,7 @@ mod progressive;
 mod quantile;
 mod recorder;
 mod reduce;
+mod room;
 mod sampler;
 mod stratum;
 mod tallied;

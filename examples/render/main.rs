@@ -43,7 +43,7 @@ struct Arguments {
     #[arg(long, value_name = "SECONDS", group = "length", value_parser = positive)]
     time: Option<f64>,
     /// Stops when the root-mean-square error of the pixels, as it is estimated, is below this part of the mean. Of sequences it is estimated from
-    /// parts of one set of points, each of 64 where there are more than 128, and is rather too large: by a sixth in the Cornell box at 128
+    /// parts of one set of points, each of 64 where there are more than 128, and is rather too large: by a sixth in the Cornell box at 128. With --adaptive pixels of a sequence are told by halves
     #[arg(long, value_name = "RELATIVE_ERROR", group = "length", value_parser = positive)]
     noise: Option<f64>,
     /// The points of the pixels; the default is blue-noise, and rescrambled with --adaptive, --time and --noise

@@ -2,6 +2,7 @@
 
 mod allocation;
 mod chessboard;
+mod dealing;
 
 pub use allocation::Allocation;
 

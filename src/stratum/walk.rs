@@ -3,8 +3,8 @@
 use core::ops::Range;
 
 use super::{Stratum, Visited};
-use crate::evaluate::with_room;
 use crate::points::{Independent, PointSet, permuted};
+use crate::room::with_room;
 use crate::{Cursor, Error, NonFinite, Value, reduce};
 
 /// So many points in each stratum, one stratum after the other, in parts that can be evaluated side by side.

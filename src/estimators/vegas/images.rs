@@ -60,14 +60,14 @@ impl<'a> Images<'a> {
     }
 
     #[inline(always)]
-    fn place_along(&mut self, number: usize, runs: &[Run], rows: &mut [f64]) {
+    fn place_along(&mut self, width: usize, runs: &[Run], rows: &mut [f64]) {
         let most = WHOLE + (self.number - 1) as f64;
-        let axes = &mut self.axes[..number];
+        let axes = &mut self.axes[..width];
         for run in runs {
             enter(run.stratum, axes);
-            let all = run.points.start * number..run.points.end * number;
-            let rows = rows[all.clone()].chunks_exact_mut(number);
-            let hits = self.hits[all].chunks_exact_mut(number);
+            let all = run.points.start * width..run.points.end * width;
+            let rows = rows[all.clone()].chunks_exact_mut(width);
+            let hits = self.hits[all].chunks_exact_mut(width);
             let jacobians = &mut self.jacobians[run.points.clone()];
             for ((row, hits), jacobian) in rows.zip(hits).zip(jacobians) {
                 let mut product = 1.0;
@@ -77,8 +77,8 @@ impl<'a> Images<'a> {
                     // of a bin may go to either of the two.
                     let shifted = smaller((scaled - 0.5) + WHOLE, most);
                     #[expect(clippy::cast_possible_truncation, reason = "below the number of bins")]
-                    let number = shifted.to_bits() as u32;
-                    *hit = axis.first + number;
+                    let place = shifted.to_bits() as u32;
+                    *hit = axis.first + place;
                     let bin = &self.bins[*hit as usize];
                     *x = bin.image(scaled - (shifted - WHOLE));
                     product *= bin.jacobian;

@@ -2,7 +2,7 @@
 
     pip install -r requirements.txt
     cargo build --release --all-features --example render
-    DRJIT_LIBLLVM_PATH=... python3 compare_mitsuba.py [-D name=value]... [--points SET] [--no-adaptive] [--spp N]... [--runs R] SCENE.xml...
+    DRJIT_LIBLLVM_PATH=... python3 compare_mitsuba.py [-D name=value]... [--ours=OPTIONS]... [--spp N]... [--runs R] SCENE.xml...
 
 Mitsuba runs its fastest variant for processors, `llvm_ad_rgb`, with each of `SAMPLERS`; the scene's own sampler is
 replaced. The first render compiles: its time, loading included, is `cold`, and counts for nothing else. Then for every number of
@@ -11,8 +11,9 @@ behind them; ours are of rendering alone, as Mitsuba's are, and loading is told 
 
 The error is that of the pixels' means over seeds, from the differences of all pairs of runs: `mse x spp` is the mean over pixels and
 channels of the squared difference, halved, times the samples. It sees noise and no bias; so `apart` is the difference of
-the mean colours of both programs in standard errors, to be below about 3. An efficiency is 1 / (mse x seconds). Ours is rendered with as
-many samples in every pixel, and with those dealt to the pixels by `--adaptive`, which not all points can. The last line is ours over that of Mitsuba's better sampler at the same number of samples.
+the mean colours of both programs in standard errors, to be below about 3. An efficiency is 1 / (mse x seconds). Ours is rendered
+once for each of `--ours`, options of the program; without any with those of `OURS`. Pixels that reuse paths err alike: the error is theirs,
+not that of means over several pixels. The last line is ours over that of Mitsuba's better sampler at the same number of samples.
 """
 
 import argparse
@@ -34,6 +35,9 @@ mi.set_log_level(mi.LogLevel.Error)
 PINNED = "3.9.1"
 # `ldsampler` is left out: it is slightly biased in this version.
 SAMPLERS = ["independent", "multijitter"]
+
+# As many samples in every pixel; more where they differ more; paths reused by neighbours; both.
+OURS = ["", "--adaptive", "--reuse 8", "--reuse 16 --adaptive"]
 
 
 def included(file: Path) -> str:
@@ -73,11 +77,10 @@ class Mitsuba:
 class Ours:
     """The same scene in the program `render`."""
 
-    def __init__(self, file: Path, program: Path, points: str, values: dict[str, str], adaptive: bool):
-        self.name = f"ours {points}" + (", adaptive" if adaptive else "")
-        self.command = [program, file, "--points", points, "--replicates", "1", "--json", "-"]
-        if adaptive:
-            self.command.append("--adaptive")
+    def __init__(self, file: Path, program: Path, options: str, values: dict[str, str]):
+        self.name = f"ours {options}".strip()
+        points = [] if "--points" in options else ["--points", "rescrambled"]
+        self.command = [program, file, *points, *options.split(), "--json", "-"]
         for name, value in values.items():
             self.command += ["-D", f"{name}={value}"]
         self.load = self.cold = 0.0
@@ -116,8 +119,7 @@ def apart(ours: list[np.ndarray], theirs: list[np.ndarray]) -> float:
 
 def compare(file: Path, options: argparse.Namespace) -> None:
     values = dict(options.values)
-    kinds = [False, True] if options.adaptive else [False]
-    ours = [Ours(file, options.program, options.points, values, adaptive) for adaptive in kinds]
+    ours = [Ours(file, options.program, kind, values) for kind in options.ours]
     programs = [*ours, *(Mitsuba(file, sampler, values) for sampler in SAMPLERS)]
     print(f"\n{file.name}")
     print(f"{'':28} {'spp':>5} {'M paths/s':>22} {'seconds':>22} {'rmse':>9} {'mse x spp':>10} {'efficiency':>11} {'apart':>6}")
@@ -159,19 +161,16 @@ def main() -> None:
     parser.add_argument("scenes", nargs="+", type=Path, metavar="SCENE.xml")
     parser.add_argument("-D", dest="values", type=assignment, action="append", default=[], metavar="NAME=VALUE",
                         help="gives a parameter of the scenes a value")
-    parser.add_argument("--points", default="rescrambled")
-    parser.add_argument("--adaptive", action=argparse.BooleanOptionalAction, default=True,
-                        help="renders with ours dealing samples to the pixels as well")
+    parser.add_argument("--ours", action="append", metavar="OPTIONS", help="options of the program `render`, as in --ours=--adaptive")
     parser.add_argument("--spp", type=int, action="append")
     parser.add_argument("--runs", type=int, default=5)
     program = Path(__file__).parent.parent / "target/release/examples/render"
     parser.add_argument("--program", type=Path, default=program)
     options = parser.parse_args()
     options.spp = options.spp or [16, 64, 256]
+    options.ours = options.ours or OURS
     if options.runs < 3:
         parser.error("--runs must be at least 3: errors come from pairs")
-    if options.adaptive and options.points == "blue-noise":
-        parser.error("blue noise has as many points in every pixel: take --no-adaptive")
     if mi.__version__ != PINNED:
         parser.error(f"Mitsuba {PINNED} is wanted, this is {mi.__version__}")
     for scene in options.scenes:

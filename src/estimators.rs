@@ -26,7 +26,7 @@ mod until;
 mod vegas;
 
 pub use average::Average;
-#[cfg(all(feature = "path", feature = "simd"))]
+#[cfg(feature = "path")]
 pub(crate) use average::whole;
 pub use bounded::Bounded;
 pub use median::Median;

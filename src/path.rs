@@ -32,6 +32,7 @@
 //! | [`Paths::radiance`] | the rendering equation |
 //! | [`Recursive`] | the same as it is taught, to be compared with |
 //! | [`View::learn_roulette`] | paths that end where it pays |
+//! | [`Paths::reused_by`] | paths that the pixels nearby use too |
 //! | [`Adaptive`], [`Allocation`] | more samples where the picture needs them |
 //! | [`Image`] | pictures, their errors, their files |
 //! | [`scenes`] | the Cornell box and others, as `reference/scenes` has them for Mitsuba |
@@ -69,6 +70,7 @@ mod ray;
 mod recursive;
 mod render;
 mod resolution;
+mod reuse;
 pub(crate) mod roulette;
 mod scene;
 pub mod scenes;

@@ -18,6 +18,12 @@ impl<V: Value> Tallies<V> {
         Self(vec![Tally::EMPTY; sources])
     }
 
+    /// That of one source, closed.
+    #[cfg(feature = "path")]
+    pub(crate) fn of(tally: Tally<V>) -> Self {
+        Self(vec![tally])
+    }
+
     /// How many evaluations were made.
     pub fn used(&self) -> u64 {
         self.0.iter().map(Tally::used).sum()
@@ -73,15 +79,15 @@ pub(crate) fn run<E: Tallied, I: Integrand>(
         integrand,
         policy,
     );
-    finish(estimator, &tallies, outcome, clock)
+    finish(estimator, &tallies, outcome, clock.elapsed().as_secs_f64())
 }
 
 /// The estimate of a run that ended with `outcome`. Apart, since it does not depend on the integrand.
-fn finish<E: Tallied, V: Value>(
+pub(crate) fn finish<E: Tallied, V: Value>(
     estimator: &E,
     tallies: &Tallies<V>,
     outcome: Result<(), Error>,
-    clock: Instant,
+    seconds: f64,
 ) -> Result<Estimate<V>, Incomplete<V>> {
     let outcome = estimator.check(tallies).and(outcome);
     let tallies = tallies.closed();
@@ -91,7 +97,7 @@ fn finish<E: Tallied, V: Value>(
         } else {
             Stop::Unfinished
         },
-        seconds: clock.elapsed().as_secs_f64(),
+        seconds,
         ..estimate
     });
     match outcome {

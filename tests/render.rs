@@ -13,11 +13,12 @@ use estimand::path::bsdf::{Bsdf, Lambertian};
 use estimand::path::light::{AreaLights, Environment, Light, NoEnvironment};
 use estimand::path::scenes::{self, CORNELL_LIGHT};
 use estimand::path::sensor::{Pinhole, Sensor};
-use estimand::path::{Adaptive, Allocation, Direct, Ending, Image, Recursive, View};
+use estimand::path::{Adaptive, Allocation, Direct, Ending, Image, Recursive, Share, View};
 use estimand::points::{
-    Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Rescrambled, Skipped, Sobol, Stratified,
+    Halton, Hammersley, HashedOwen, NRooks, Owen, PointSet, Rescrambled, Skipped, Sobol,
+    Stratified, pixel,
 };
-use estimand::{Average, Estimator, MonteCarlo};
+use estimand::{Average, Estimator, MonteCarlo, NonFinite, each};
 
 fn reference(name: &'static str, size: usize, samples: u64) -> Reference {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/reference/images");
@@ -99,6 +100,36 @@ fn cornell_box_of_eight_segments() {
     check("sobol", 8, 5, &|seed| {
         Box::new(sobol.clone().scrambled(HashedOwen { seed }))
     });
+}
+
+/// Pixels with unlike numbers of points, that end their paths late and early.
+#[test]
+fn cornell_box_of_reused_paths() {
+    let reference = reference("cornell_box", 128, 4 * 32768);
+    for (number, from) in [(20, 5), (21, 1)] {
+        let mut view = scenes::cornell_box();
+        view.paths = view.paths.roulette_from(from).reused_by(8).unwrap();
+        let picture = |seed| {
+            let rows = each(128, |y| {
+                let shares: Vec<_> = (0..128)
+                    .map(|x| {
+                        let position = [x, u32::try_from(y).unwrap()];
+                        Share {
+                            position,
+                            points: Rescrambled::new(4, pixel::seed(position, seed)).unwrap(),
+                            count: [4, 9, 16, 11][x as usize % 7 % 4],
+                        }
+                    })
+                    .collect();
+                let means = view.averages([128; 2], &shares, NonFinite::Fail);
+                means.into_iter().map(|mean| mean.unwrap().mean).collect()
+            });
+            Image::new(128, rows.into_iter().flat_map(|row: Vec<_>| row).collect()).unwrap()
+        };
+        let ours = Batches::new(32, 4, |batch| picture(hash(number, batch)));
+        let label = format!("reused, roulette from segment {from}");
+        reference.compare(&ours, &label).check();
+    }
 }
 
 #[test]

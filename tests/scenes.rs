@@ -8,13 +8,13 @@
 mod agreement;
 
 use agreement::{Batches, Reference};
-use estimand::each;
 use estimand::hash::hash;
 use estimand::mitsuba::{Instance, Loaded, read};
-use estimand::path::Image;
+use estimand::path::{Image, Share};
 use estimand::points::{
     DigitPermutation, Halton, HashedOwen, Independent, PointSet, Rescrambled, Sobol, pixel,
 };
+use estimand::{Estimate, each};
 use glam::DVec3;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/reference");
@@ -30,21 +30,29 @@ type Points<'a> = &'a (dyn Fn(u64) -> Box<dyn PointSet> + Sync);
 fn render(loaded: &Loaded, seed: u64, points: Points<'_>) -> Image {
     let rows = each(SIZE.into(), |y| {
         let y = u32::try_from(y).expect("below the size");
-        let pixel = |x| {
-            let points = points(pixel::seed([x, y], seed));
-            let estimate = loaded
-                .picture
-                .average([x, y], loaded.size, &*points, SAMPLES)
-                .expect("an estimate");
+        let sets: Vec<_> = (0..SIZE)
+            .map(|x| points(pixel::seed([x, y], seed)))
+            .collect();
+        let shares: Vec<_> = (0..SIZE)
+            .zip(&sets)
+            .map(|(x, points)| Share {
+                position: [x, y],
+                points: &**points,
+                count: SAMPLES,
+            })
+            .collect();
+        let estimates = loaded.picture.averages(loaded.size, &shares);
+        let mean = |estimate: Result<Estimate<_>, _>| {
+            let estimate = estimate.expect("an estimate");
             assert_eq!(estimate.rejected, 0);
             estimate.mean
         };
-        (0..SIZE).map(pixel).collect::<Vec<DVec3>>()
+        estimates.into_iter().map(mean).collect::<Vec<DVec3>>()
     });
     Image::new(SIZE as usize, rows.concat()).expect("whole rows")
 }
 
-/// Compares a scene with its reference, for three point sets.
+/// Compares a scene with its reference, for four point sets, and with paths that are reused.
 fn compare(name: &'static str) {
     compare_filtered(name, 1.0);
 }
@@ -65,23 +73,28 @@ fn compare_filtered(name: &'static str, area: f64) {
         &[("size", &SIZE.to_string())],
     )
     .unwrap();
-    let loaded = description.load(Instance::Smallest).unwrap();
+    let mut loaded = description.load(Instance::Smallest).unwrap();
     assert_eq!(loaded.size, [SIZE; 2]);
     let sobol = Sobol::new(32).unwrap();
     let halton = Halton::new(32).unwrap();
-    let sets: [(&str, Points<'_>); 4] = [
-        ("independent", &|seed| Box::new(Independent::new(seed))),
-        ("sobol", &|seed| {
-            Box::new(sobol.clone().scrambled(HashedOwen { seed }))
-        }),
-        ("halton", &|seed| {
-            Box::new(halton.clone().scrambled(DigitPermutation { seed }))
-        }),
-        ("rescrambled", &|seed| {
-            Box::new(Rescrambled::new(4, seed).unwrap())
-        }),
+    let rescrambled: Points<'_> = &|seed| Box::new(Rescrambled::new(4, seed).unwrap());
+    let sets: [(&str, Points<'_>, u32); 5] = [
+        ("independent", &|seed| Box::new(Independent::new(seed)), 1),
+        (
+            "sobol",
+            &|seed| Box::new(sobol.clone().scrambled(HashedOwen { seed })),
+            1,
+        ),
+        (
+            "halton",
+            &|seed| Box::new(halton.clone().scrambled(DigitPermutation { seed })),
+            1,
+        ),
+        ("rescrambled", rescrambled, 1),
+        ("rescrambled, reused by 8", rescrambled, 8),
     ];
-    for (number, (label, points)) in (0..).zip(sets) {
+    for (number, (label, points, pixels)) in (0..).zip(sets) {
+        loaded.picture.reuse_paths(pixels).unwrap();
         let ours = Batches::new(PICTURES, SAMPLES, |batch| {
             render(&loaded, hash(number, batch), points)
         });

@@ -132,6 +132,7 @@ fn figures(
         "rejected": work.rejected,
         "without_value": work.without_value,
         "dealt": work.dealt,
+        "reused_by": job.reused_by,
         "noise": work.noise,
         "rmse": rmse.transpose()?,
         "relative_mse": relative.transpose()?,

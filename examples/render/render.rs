@@ -38,6 +38,9 @@ pub(crate) struct Job<'a> {
     pub(crate) points: Points,
     pub(crate) seed: u64,
     pub(crate) plan: Plan,
+    /// By how many pixels each path is used, and from how many columns they are.
+    pub(crate) reused_by: u32,
+    pub(crate) columns: u32,
     pub(crate) checkpoint: Option<&'a Checkpoint>,
     pub(crate) stop: &'a AtomicBool,
 }
@@ -101,7 +104,8 @@ impl Job<'_> {
             let mut state = lock(state);
             let first = self.plan.first.filter(|&first| state.samples == first);
             if let Some(first) = first.filter(|_| state.allocation.is_none()) {
-                let allocation = (state.image()).and_then(|image| Allocation::new(&image, first));
+                let dealt = |image| Allocation::of_groups(&image, first, self.columns);
+                let allocation = state.image().and_then(dealt);
                 state.allocation = Some(allocation.map_err(|e| e.to_string())?);
             }
             state.allocation.clone()
@@ -158,6 +162,7 @@ impl Job<'_> {
             pixels: vec![[Part::default(); 2]; width],
             ..Row::default()
         };
+        let columns = self.columns as usize;
         let mut x = 0;
         while x < width {
             if self.stop.load(Ordering::Relaxed) {
@@ -165,7 +170,7 @@ impl Job<'_> {
             }
             let mut some = Vec::new();
             let mut paths = 0;
-            while x < width && paths < ASKED {
+            while x < width && (paths < ASKED || !x.is_multiple_of(columns)) {
                 let end = counts.of(at * width + x).max(before[x]);
                 let count = end - before[x];
                 if count > 0 {

@@ -57,6 +57,14 @@ pub trait Picture: Sync + fmt::Debug {
         cut: &dyn Fn(&Share<&dyn PointSet>) -> u64,
     ) -> Vec<[Result<Estimate<DVec3>, Incomplete<DVec3>>; 2]>;
 
+    /// Reuses each path for `pixels` that are asked for at once, by [`averages`](Self::averages) and [`averages_in_two`](Self::averages_in_two): see
+    /// [`Paths::reused_by`](crate::path::Paths::reused_by).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Refused`] as there.
+    fn reuse_paths(&mut self, pixels: u32) -> Result<(), Error>;
+
     /// Ends paths by Russian roulette as it pays in this picture: see [`View::learn_roulette`].
     ///
     /// # Errors
@@ -109,6 +117,11 @@ where
         cut: &dyn Fn(&Share<&dyn PointSet>) -> u64,
     ) -> Vec<[Result<Estimate<DVec3>, Incomplete<DVec3>>; 2]> {
         self.averages_in_two(size, shares, cut, NonFinite::Reject)
+    }
+
+    fn reuse_paths(&mut self, pixels: u32) -> Result<(), Error> {
+        self.paths = self.paths.reused_by(pixels)?;
+        Ok(())
     }
 
     fn learn_roulette(&mut self, size: [u32; 2], count: u64, seed: u64) -> Result<(), Error> {

@@ -103,6 +103,21 @@ impl<S: Simd> Real<S> {
         }
     }
 
+    /// As many of the first numbers as there are lanes.
+    #[inline(always)]
+    pub(in crate::path) fn first_of(simd: S, numbers: &[f32]) -> Self {
+        Self {
+            simd,
+            lanes: S::as_simd_f32s(numbers).0[0],
+        }
+    }
+
+    /// To the first numbers.
+    #[inline(always)]
+    pub(in crate::path) fn store_first(self, numbers: &mut [f32]) {
+        S::as_mut_simd_f32s(numbers).0[0] = self.lanes;
+    }
+
     #[inline(always)]
     pub(in crate::path) fn store(self, row: &mut Row<f32>) {
         S::as_mut_simd_f32s(&mut row.0).0[0] = self.lanes;

@@ -11,6 +11,7 @@ mod math;
 mod near;
 mod optics;
 mod place;
+mod reuse;
 mod solids;
 mod sweep;
 mod walk;
@@ -22,13 +23,16 @@ use super::bsdf::{Lambertian, Scattered, Scattering};
 use super::geometry::{Geometry, Hit};
 use super::light::{AreaLights, Emission, Illumination, Sky};
 use super::render::Start;
+use super::reuse::{Group, Traces};
 use super::shape::Primitive;
 use crate::Sampler;
 
 pub(in crate::path) use optics::{Emitted, FlatLight, Law, Optics};
+pub(in crate::path) use reuse::Keeper;
 
 use near::Near;
 use place::Table;
+use reuse::Sharing;
 use solids::Solids;
 use sweep::Shapes;
 use walk::Walk;
@@ -172,7 +176,7 @@ impl Packet {
     }
 
     /// What [`Paths::radiance`] gives for each of the points, times the weight that its start has; `start` tells where the path of a point
-    /// begins.
+    /// begins. Paths that are to be reused are kept by `keeper`, and have no values yet.
     ///
     /// The view is behind a pointer, and it is not inlined, so that the loop is compiled for every kind of sampler, but not of
     /// view.
@@ -184,14 +188,15 @@ impl Packet {
         start: &dyn Fn(usize, &mut U) -> Start,
         points: &mut [U],
         values: &mut [Vec3],
+        keeper: Option<Keeper<'_>>,
     ) {
         let asks = self.asks_lights || self.asks_around;
         let constant = !self.others && !self.varying;
         let plain = self.solids.is_none() && constant && !asks && single.sky().is_none();
         if plain {
-            self.walk::<U, true>(paths, single, start, points, values);
+            self.walk::<U, true>(paths, single, start, points, values, keeper);
         } else {
-            self.walk::<U, false>(paths, single, start, points, values);
+            self.walk::<U, false>(paths, single, start, points, values, keeper);
         }
     }
 
@@ -203,6 +208,7 @@ impl Packet {
         start: &dyn Fn(usize, &mut U) -> Start,
         points: &mut [U],
         values: &mut [Vec3],
+        keeper: Option<Keeper<'_>>,
     ) {
         self.arch.dispatch(Walk::<_, PLAIN> {
             packet: self,
@@ -212,6 +218,23 @@ impl Packet {
             start,
             points,
             values,
+            keeper,
+        });
+    }
+
+    /// Shares the light of some groups of paths.
+    #[inline(never)]
+    pub(in crate::path) fn share(
+        &self,
+        geometry: &Geometry,
+        groups: &[Group],
+        traces: &mut Traces,
+    ) {
+        self.arch.dispatch(Sharing {
+            packet: self,
+            geometry,
+            groups,
+            traces,
         });
     }
 }

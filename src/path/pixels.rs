@@ -4,20 +4,22 @@ use super::View;
 use super::bsdf::Bsdf;
 use super::filter::Filter;
 use super::light::{Environment, Light};
+use super::reuse::{Group, Part, Pixels, Run, Tracer, Traces};
 use super::sensor::Sensor;
 use crate::points::{PointSet, Skipped};
-use crate::{Average, Estimator, NonFinite, Outcome};
+use crate::recorder::Recorder;
+use crate::{Average, Estimator, Integrand, NonFinite, Outcome};
 use glam::Vec3;
 #[cfg(feature = "simd")]
 use {
-    super::packet::Packet,
+    super::packet::{Keeper, Packet},
     crate::block::Block,
     crate::estimators::whole,
     crate::evaluate::BLOCK,
     crate::room::with_room,
     crate::tallied::Tallied,
     crate::tally::Tally,
-    crate::{Cursor, Estimate, Integrand, Value},
+    crate::{Cursor, Estimate, Value},
     glam::DVec3,
 };
 
@@ -33,17 +35,30 @@ pub struct Share<P> {
 }
 
 impl<P: PointSet> Share<P> {
+    /// The first points, and the others.
+    fn cut(&self, first: u64) -> [Share<Skipped<&P>>; 2] {
+        let part = |skipped, count| Share {
+            position: self.position,
+            points: Skipped::new(&self.points, skipped),
+            count,
+        };
+        [part(0, first), part(first, self.count - first)]
+    }
+
     fn average(&self, rule: NonFinite) -> Average<&P> {
         Average::new(&self.points, self.count).non_finite(rule)
     }
 }
 
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F> {
-    /// The mean of each of some pixels of a picture of `size`: what [`Average`] gives for the [`pixel`](Self::pixel) alone, to the bit,
+    /// The mean of each of some pixels of a picture of `size`: unless paths are reused, what [`Average`] gives for the [`pixel`](Self::pixel) alone, to the bit,
     /// but for the [time](crate::Estimate::seconds), which may be 0: that of pixels together is not told apart.
     ///
     /// Where many paths are followed at once, those of the next pixel begin where those of one run out, which is several times as
     /// fast for a few points a pixel, and somewhat faster for some hundreds. A few thousand points in all are enough for that.
+    ///
+    /// If paths are [reused](super::Paths::reused_by), they are by pixels that follow one another here: ask for all of a run of
+    /// [columns](super::Paths::columns_together) at once, or the means are others.
     ///
     /// ```
     /// use estimand::path::{Share, scenes};
@@ -65,13 +80,20 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     ///
     /// # Errors
     ///
-    /// Each pixel has its own: that of [`Average`].
+    /// Each pixel has its own: that of [`Average`]. Where paths are reused, light that is not finite is met by all pixels that use it: each of them fails, or
+    /// counts it, and names the point of its own path of the same number.
     pub fn averages<P: PointSet>(
         &self,
         size: [u32; 2],
         shares: &[Share<P>],
         rule: NonFinite,
     ) -> Vec<Outcome<Vec3>> {
+        if let Some(parts) = self.reused(size, shares, &|_| 0, rule) {
+            let shares = shares.iter().zip(parts);
+            let mean =
+                |(share, [_, all]): (&Share<P>, [Part; 2])| all.outcome(&share.average(rule));
+            return shares.map(mean).collect();
+        }
         self.each(size, shares, |share, values| {
             self.mean(size, share, values, rule)
         })
@@ -118,21 +140,20 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
                 .is_none_or(|size| size == count || count == 0);
             assert!(cut <= count && whole, "{count} points cut at {cut}");
         }
+        if let Some(parts) = self.reused(size, shares, &cut, rule) {
+            let shares = shares.iter().zip(parts);
+            let means = |(share, [a, b]): (&Share<P>, [Part; 2])| {
+                let [first, others] = share.cut(cut(share));
+                [
+                    a.outcome(&first.average(rule)),
+                    b.outcome(&others.average(rule)),
+                ]
+            };
+            return shares.map(means).collect();
+        }
         self.each(size, shares, |share, values| {
             let cut = cut(share);
-            let (position, points) = (share.position, &share.points);
-            let parts = [
-                Share {
-                    position,
-                    points: Skipped::new(points, 0),
-                    count: cut,
-                },
-                Share {
-                    position,
-                    points: Skipped::new(points, cut),
-                    count: share.count - cut,
-                },
-            ];
+            let parts = share.cut(cut);
             let values = values.map(|values| {
                 let (first, others) = values.split_at(usize::try_from(cut).unwrap_or(usize::MAX));
                 [first, others]
@@ -142,6 +163,80 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
                 self.mean(size, &parts[part], values, rule)
             })
         })
+    }
+
+    /// What both parts of each share give where paths are reused.
+    fn reused<P: PointSet>(
+        &self,
+        size: [u32; 2],
+        shares: &[Share<P>],
+        cut: &dyn Fn(&Share<P>) -> u64,
+        rule: NonFinite,
+    ) -> Option<Vec<[Part; 2]>> {
+        let pixels = Pixels {
+            reused_by: self.paths.reused_by,
+            rule,
+            follow: &|runs: &[Run<'_, P>], groups, traces| self.trace(size, runs, groups, traces),
+            coordinates: &|share, index| {
+                let mut coordinates = Vec::new();
+                let mut recorder = Recorder {
+                    inner: share.points.point(index),
+                    coordinates: &mut coordinates,
+                };
+                self.pixel(share.position, size).evaluate(&mut recorder);
+                coordinates
+            },
+        };
+        (self.paths.reused_by > 1).then(|| pixels.parts(shares, cut))
+    }
+
+    /// Follows the paths of some runs, and shares the light of some groups.
+    pub(in crate::path) fn trace<P: PointSet>(
+        &self,
+        size: [u32; 2],
+        runs: &[Run<'_, P>],
+        groups: &[Group],
+        traces: &mut Traces,
+    ) {
+        #[cfg(feature = "simd")]
+        if let Some(packet) = self.pixel([0; 2], size).packet() {
+            let slots = |run: &Run<'_, P>| run.slot..run.slot + run.length();
+            let of: Vec<_> = runs.iter().flat_map(slots).collect();
+            let keeper = Keeper {
+                traces,
+                roulette: &self.paths.roulette,
+                of: &of,
+            };
+            self.follow(packet, size, runs, &mut Vec::new(), Some(keeper));
+            return packet.share(self.scene.geometry(), groups, traces);
+        }
+        self.trace_singly(size, runs, groups, traces);
+    }
+
+    /// The same, one path after the other.
+    pub(in crate::path) fn trace_singly<P: PointSet>(
+        &self,
+        size: [u32; 2],
+        runs: &[Run<'_, P>],
+        groups: &[Group],
+        traces: &mut Traces,
+    ) {
+        for run in runs {
+            let pixel = self.pixel(run.share.position, size);
+            for (slot, index) in (run.slot..).zip(run.indices.clone()) {
+                pixel.trace(
+                    &mut run.share.points.point(index),
+                    &mut Tracer {
+                        traces,
+                        roulette: &self.paths.roulette,
+                        slot,
+                    },
+                );
+            }
+        }
+        for group in groups {
+            traces.share(group, &|way| self.scene.occluded(way));
+        }
     }
 
     /// What `tell` makes of each share and the values at its points, if it has few.
@@ -216,7 +311,11 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
             };
             let end = shares.iter().take_while(|share| more(share)).count();
             let (batch, rest) = shares.split_at(end);
-            self.follow(packet, size, batch, &mut values);
+            let runs: Vec<_> = batch
+                .iter()
+                .map(|share| Run::of(share, few(share)))
+                .collect();
+            self.follow(packet, size, &runs, &mut values, None);
             let mut given = &values[..];
             outcomes.extend(batch.iter().map(|share| {
                 let (own, others) = given.split_at(few(share));
@@ -228,41 +327,42 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         outcomes
     }
 
-    /// The values at the points of all shares that have few.
+    /// The values at some points of shares, or what is to be kept of their paths.
     fn follow<P: PointSet>(
         &self,
         packet: &Packet,
         size: [u32; 2],
-        shares: &[Share<P>],
+        runs: &[Run<'_, P>],
         values: &mut Vec<Vec3>,
+        keeper: Option<Keeper<'_>>,
     ) {
         // Any pixel will do for all that is asked but where paths begin.
         let any = self.pixel([0; 2], size);
-        let width = |share: &Share<P>| any.dimensions().min(share.points.dimensions());
-        let rows = |share: &Share<P>| few(share) * width(share) as usize;
-        let length = shares.iter().map(rows).sum();
+        let width = |run: &Run<'_, P>| any.dimensions().min(run.share.points.dimensions());
+        let rows = |run: &Run<'_, P>| run.length() * width(run) as usize;
+        let length = runs.iter().map(rows).sum();
         with_room(length, |ahead| {
             let mut free = &mut *ahead;
-            for share in shares {
-                let (own, others) = free.split_at_mut(rows(share));
-                share.points.fill(0, 0..width(share), own);
+            for run in runs {
+                let (own, others) = free.split_at_mut(rows(run));
+                run.share.points.fill(run.indices.start, 0..width(run), own);
                 free = others;
             }
             let (mut samplers, mut pixels) = (Vec::new(), Vec::new());
             let mut left = &*ahead;
-            for share in shares {
-                let width = width(share) as usize;
-                for index in 0..few(share) {
+            for run in runs {
+                let width = width(run) as usize;
+                for index in run.indices.clone() {
                     let (row, others) = left.split_at(width);
                     left = others;
-                    samplers.push(Cursor::with_prefix(&share.points, index as u64, row));
-                    pixels.push(share.position);
+                    samplers.push(Cursor::with_prefix(&run.share.points, index, row));
+                    pixels.push(run.share.position);
                 }
             }
             values.clear();
             values.resize(samplers.len(), Vec3::ZERO);
             let start = |point: usize, u: &mut _| self.pixel(pixels[point], size).start(u);
-            packet.radiance(self.paths, &any, &start, &mut samplers, values);
+            packet.radiance(self.paths, &any, &start, &mut samplers, values, keeper);
         });
     }
 }

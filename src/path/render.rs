@@ -17,6 +17,7 @@ use super::light::{Emission, Illumination, Sky};
 use super::light::{Environment, Light};
 #[cfg(feature = "simd")]
 use super::packet::{Packet, Single};
+use super::reuse::Tracer;
 use super::roulette::Steps;
 use super::sensor::Sensor;
 use super::{Paths, Ray, Scene, Share};
@@ -57,6 +58,13 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Pixel<'_, B, L, E,
             ray: self.sensor.ray(film, u),
             weight: seen.weight,
         }
+    }
+
+    /// Follows a path of which something is kept.
+    pub(in crate::path) fn trace<S: Sampler>(&self, u: &mut S, tracer: &mut Tracer<'_>) {
+        let Start { ray, weight } = self.start(u);
+        let radiance = self.paths.witnessed(self.scene, ray, u, tracer);
+        tracer.end(radiance, weight);
     }
 
     /// The radiance of a path that somebody looks at, and what it counts.
@@ -141,7 +149,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
         #[cfg(feature = "simd")]
         if let Some(packet) = self.packet() {
             let start = |_, u: &mut S| self.start(u);
-            return packet.radiance(self.paths, self, &start, samplers, values);
+            return packet.radiance(self.paths, self, &start, samplers, values, None);
         }
         for (u, value) in samplers.iter_mut().zip(values) {
             *value = Integrand::evaluate(self, u);
@@ -294,7 +302,8 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
 
     /// The picture whose pixels are means over the first `count` points, or all of a finite set, that `points` makes of their seeds: what
     /// [`render`](Self::render) gives with [`Average`](crate::Average), to the bit, and faster, since many paths are followed
-    /// at once; see [`averages`](Self::averages).
+    /// at once; see [`averages`](Self::averages). Unless paths are [reused](Paths::reused_by): then it has less noise, and pixels are no longer
+    /// independent of one another.
     ///
     /// ```
     /// use estimand::Average;

@@ -55,6 +55,16 @@ impl Rule {
         survival.min(LARGEST)
     }
 
+    /// The probability with which a path goes on after a segment, as [`play`](Self::play) has it.
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+    pub(in crate::path) fn chance(&self, segment: u32, carried: f32) -> f32 {
+        if segment < self.from {
+            return 1.0;
+        }
+        self.survival(segment, carried).min(1.0) as f32
+    }
+
     /// The weight of a path that goes on, `None` for one that ends, from what it carries after a segment.
     #[inline]
     pub(in crate::path) fn play<S: Sampler>(

@@ -9,6 +9,12 @@ pub trait Detail: Copy + Send + Sync {
     /// needed.
     fn from_shading(shading: impl FnOnce() -> Shading) -> Self;
 
+    /// The normal that light is scattered by, where that of the surface is `normal`: the same, unless a detail says otherwise whose law heeds another.
+    #[inline]
+    fn normal(&self, normal: Vec3A) -> Vec3A {
+        normal
+    }
+
     /// Whether there is nothing that it needs to know.
     fn is_nothing() -> bool {
         false
@@ -28,6 +34,11 @@ impl Detail for Shading {
     #[inline]
     fn from_shading(shading: impl FnOnce() -> Self) -> Self {
         shading()
+    }
+
+    #[inline]
+    fn normal(&self, _: Vec3A) -> Vec3A {
+        self.normal
     }
 }
 

@@ -1,6 +1,6 @@
 //! What the first samples of a picture say of its pixels.
 
-use super::chessboard::{self, COLOURS, colour};
+use super::chessboard::{self, Board, COLOURS};
 use super::dealing::{counts, powers};
 use crate::Error;
 use crate::path::Image;
@@ -46,7 +46,7 @@ use crate::path::Image;
 pub struct Allocation {
     /// Of each colour in proportion to what its pixels' deviations are taken for: the largest is 1.
     deviations: [Vec<f64>; 2],
-    width: usize,
+    board: Board,
     first: u64,
 }
 
@@ -55,7 +55,7 @@ pub struct Allocation {
 #[derive(serde::Deserialize)]
 struct Saved {
     deviations: [Vec<f64>; 2],
-    width: usize,
+    board: Board,
     first: u64,
 }
 
@@ -66,12 +66,14 @@ impl TryFrom<Saved> for Allocation {
     fn try_from(saved: Saved) -> Result<Self, Self::Error> {
         let Saved {
             deviations,
-            width,
+            board,
             first,
         } = saved;
         let pixels: usize = deviations.iter().map(Vec::len).sum();
-        let whole = width > 0 && pixels > 0 && pixels.is_multiple_of(width) && first > 0;
-        let of_colour = |own: usize| (0..pixels).filter(move |&pixel| colour(pixel, width) == own);
+        let Board { width, field } = board;
+        let sound = width > 0 && field > 0 && first > 0;
+        let whole = sound && pixels > 0 && pixels.is_multiple_of(width);
+        let of_colour = |own: usize| (0..pixels).filter(move |&pixel| board.colour(pixel) == own);
         let fits = whole
             && COLOURS.map(|own| of_colour(own).count()) == deviations.each_ref().map(Vec::len);
         let in_range = |&deviation: &f64| deviation == 0.0 || (1e-300..=1.0).contains(&deviation);
@@ -79,7 +81,7 @@ impl TryFrom<Saved> for Allocation {
         match fits && sound {
             true => Ok(Self {
                 deviations,
-                width,
+                board,
                 first,
             }),
             false => Err("an allocation that is damaged"),
@@ -88,12 +90,27 @@ impl TryFrom<Saved> for Allocation {
 }
 
 impl Allocation {
-    /// As the standard errors of `picture` tell, which has `first` samples in each pixel. Those that are not finite tell nothing.
+    /// As the standard errors of `picture` tell, which has `first` samples in each pixel. Those that are not finite tell nothing. If its paths were
+    /// [reused](crate::path::Paths::reused_by), take [`of_groups`](Self::of_groups): pixels of both colours have samples in common.
     ///
     /// # Errors
     ///
     /// [`Error::Refused`] for a picture without standard errors, as [`Average`](crate::Average) makes it, and for no samples.
     pub fn new(picture: &Image, first: u64) -> Result<Self, Error> {
+        Self::of_groups(picture, first, 1)
+    }
+
+    /// The same with fields of the chessboard that are `columns` wide, as many as pixels [go together](crate::path::Paths::columns_together) in, or a
+    /// multiple of it: no sample has a say in the number of any pixel that uses it. A picture of one row that is no wider has one colour, and nobody to tell of it.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new), and for no columns.
+    pub fn of_groups(picture: &Image, first: u64, columns: u32) -> Result<Self, Error> {
+        if columns == 0 {
+            let what = "number of columns of a field";
+            return Err(Error::refused(what, "at least 1", columns));
+        }
         if first == 0 {
             return Err(Error::refused(
                 "number of first samples",
@@ -107,15 +124,19 @@ impl Allocation {
         })?;
         let squares = errors.pixels().iter().map(|error| error.length_squared());
         let squares: Vec<f64> = squares.collect();
-        let deviations = chessboard::deviations(&squares, picture.width());
-        Ok(Self::of(&deviations, picture.width(), first))
+        let board = Board {
+            width: picture.width(),
+            field: columns as usize,
+        };
+        let deviations = chessboard::deviations(&squares, board);
+        Ok(Self::of(&deviations, board, first))
     }
 
     /// Pixels without a finite deviation are like the mean of the others; if all are zero, they tell nothing: then all pixels of a colour are alike.
-    fn of(all: &[f64], width: usize, first: u64) -> Self {
+    fn of(all: &[f64], board: Board, first: u64) -> Self {
         let deviations = COLOURS.map(|own| {
             let pixels = all.iter().enumerate();
-            let pixels = pixels.filter(|&(pixel, _)| colour(pixel, width) == own);
+            let pixels = pixels.filter(|&(pixel, _)| board.colour(pixel) == own);
             let mut deviations: Vec<f64> = pixels.map(|(_, &deviation)| deviation).collect();
             let finite = || deviations.iter().filter(|deviation| deviation.is_finite());
             let largest = finite().copied().fold(0.0, f64::max);
@@ -132,7 +153,7 @@ impl Allocation {
         });
         Self {
             deviations,
-            width,
+            board,
             first,
         }
     }
@@ -140,7 +161,7 @@ impl Allocation {
     /// The width and the height of the picture, in pixels.
     pub fn size(&self) -> [usize; 2] {
         let pixels: usize = self.deviations.iter().map(Vec::len).sum();
-        [self.width, pixels / self.width]
+        [self.board.width, pixels / self.board.width]
     }
 
     /// How many samples each pixel gets, row by row, the first ones included, `mean` in the mean, but no pixel less than it has: in proportion to the
@@ -182,7 +203,7 @@ impl Allocation {
     fn each(&self, deal: impl Fn(&[f64]) -> Vec<u64>) -> Vec<u64> {
         let mut dealt = self.deviations.each_ref().map(|own| deal(own).into_iter());
         let pixels = 0..self.deviations.iter().map(Vec::len).sum();
-        let mut next = |pixel| dealt[colour(pixel, self.width)].next();
+        let mut next = |pixel| dealt[self.board.colour(pixel)].next();
         pixels
             .map(|pixel| next(pixel).expect("each colour has its pixels"))
             .collect()
@@ -193,12 +214,17 @@ impl Allocation {
 mod tests {
     use super::*;
 
+    /// The chessboard of single pixels.
+    fn pixels_of(width: usize) -> Board {
+        Board { width, field: 1 }
+    }
+
     #[test]
     fn counts_follow_the_deviations() {
         // Every second one is of the same colour, in a row.
         let allocation = |deviations: &[f64], first| {
             let row: Vec<f64> = deviations.iter().flat_map(|&d| [d, 1.0]).collect();
-            Allocation::of(&row, row.len(), first)
+            Allocation::of(&row, pixels_of(row.len()), first)
         };
         let of_colour = |counts: Vec<u64>| -> Vec<u64> { counts.into_iter().step_by(2).collect() };
         // 62 for eight parts.
@@ -212,11 +238,12 @@ mod tests {
         assert!(counts[..99].iter().all(|&count| count == 3 || count == 4));
         // What tells nothing.
         assert_eq!(
-            Allocation::of(&[1.0, f64::NAN, 3.0, 1.0, f64::INFINITY], 5, 1).deviations[0],
+            Allocation::of(&[1.0, f64::NAN, 3.0, 1.0, f64::INFINITY], pixels_of(5), 1).deviations
+                [0],
             [1.0 / 3.0, 1.0, 2.0 / 3.0]
         );
         for deviation in [0.0, 3.0, 1e-300, f64::INFINITY, f64::NAN] {
-            let even = Allocation::of(&[deviation; 5], 5, 1);
+            let even = Allocation::of(&[deviation; 5], pixels_of(5), 1);
             assert_eq!(
                 (even.counts(7), even.powers(8, 2)),
                 (vec![7; 5], vec![8; 5])
@@ -258,13 +285,16 @@ mod tests {
         let image = image.with_std_error(errors).unwrap();
         assert_eq!(Allocation::new(&image, 4).unwrap().counts(7), [7; 6]);
         assert!(Allocation::new(&image, 0).is_err());
+        assert!(Allocation::of_groups(&image, 4, 0).is_err());
     }
 
     /// As pictures are dealt, to the last count.
     #[test]
     fn no_pixel_has_a_say_in_the_counts_of_its_colour() {
         use crate::hash::{hash, unit};
-        for width in [6, 7] {
+        for (width, together) in [(6, 1), (7, 1), (7, 3), (16, 8)] {
+            let field = together as usize;
+            let board = Board { width, field };
             let pixels = width * 6;
             let dealt = |changed: Option<usize>| {
                 let error = |pixel| match changed {
@@ -274,8 +304,8 @@ mod tests {
                 let errors = (0..pixels).map(|pixel| glam::DVec3::splat(error(pixel)));
                 let image = Image::new(width, vec![glam::DVec3::ONE; pixels]).unwrap();
                 let errors = Image::new(width, errors.collect()).unwrap();
-                let allocation =
-                    Allocation::new(&image.with_std_error(errors).unwrap(), 3).unwrap();
+                let image = image.with_std_error(errors).unwrap();
+                let allocation = Allocation::of_groups(&image, 3, together).unwrap();
                 [
                     allocation.counts(50),
                     allocation.counts_without_single_ones(4),
@@ -288,8 +318,8 @@ mod tests {
                 assert_ne!(before, after);
                 for (before, after) in before.iter().zip(&after) {
                     let mut both = before.iter().zip(after).enumerate();
-                    let own = colour(pixel, width);
-                    assert!(both.all(|(other, (a, b))| colour(other, width) != own || a == b));
+                    let own = board.colour(pixel);
+                    assert!(both.all(|(other, (a, b))| board.colour(other) != own || a == b));
                 }
             }
         }
@@ -298,7 +328,7 @@ mod tests {
     #[cfg(feature = "serde")]
     #[test]
     fn what_is_saved_comes_back_unless_it_is_damaged() {
-        let allocation = Allocation::of(&[1.0, 0.3, 0.0, 0.7, 0.2, 0.9], 3, 4);
+        let allocation = Allocation::of(&[1.0, 0.3, 0.0, 0.7, 0.2, 0.9], pixels_of(3), 4);
         assert_eq!(allocation.size(), [3, 2]);
         let saved = serde_json::to_string(&allocation).unwrap();
         assert_eq!(
@@ -308,6 +338,7 @@ mod tests {
         for (from, to) in [
             ("\"width\":3", "\"width\":0"),
             ("\"width\":3", "\"width\":4"),
+            ("\"field\":1", "\"field\":0"),
             ("\"first\":4", "\"first\":0"),
             ("[1.0,", "[1.5,"),
             ("[1.0,", "[1e-310,"),
@@ -326,7 +357,7 @@ mod tests {
     fn powers_keep_the_mean() {
         let steep = (0..4096).map(|i| (f64::from(i) / 500.0).exp()).collect();
         for deviations in [steep, vec![1.0; 4096], vec![0.0; 4096]] {
-            let allocation = Allocation::of(&deviations, 64, 1);
+            let allocation = Allocation::of(&deviations, pixels_of(64), 1);
             for (mean, radix) in [(64, 2), (56, 2), (6, 2), (1, 2), (64, 3), (64, 101)] {
                 let counts = allocation.powers(mean, radix);
                 let radix = u64::from(radix);
@@ -356,7 +387,7 @@ mod tests {
     #[test]
     fn the_variance_is_near_the_least() {
         let deviations: Vec<f64> = (0..4096).map(|i| 1.0 + f64::from(i % 64)).collect();
-        let allocation = Allocation::of(&deviations, 64, 1);
+        let allocation = Allocation::of(&deviations, pixels_of(64), 1);
         // Lagrange: the counts in proportion to the deviations to the power 2 / (1 + power).
         let least = |power: f64| {
             let shares = deviations.iter().map(|d| d.powf(2.0 / (1.0 + power)));

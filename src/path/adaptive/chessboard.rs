@@ -5,9 +5,22 @@
 /// The colours.
 pub(super) const COLOURS: [usize; 2] = [0, 1];
 
-/// The colour of a pixel of a picture that has so many in a row.
-pub(super) fn colour(pixel: usize, width: usize) -> usize {
-    (pixel / width + pixel % width) % 2
+/// A chessboard of the pixels of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Board {
+    /// How many pixels a row has.
+    pub(super) width: usize,
+    /// How many of them are a field.
+    pub(super) field: usize,
+}
+
+impl Board {
+    /// The colour of a pixel.
+    pub(super) fn colour(self, pixel: usize) -> usize {
+        let [row, column] = [pixel / self.width, pixel % self.width];
+        (row + column / self.field) % 2
+    }
 }
 
 /// The side of the squares of pixels that are taken together.
@@ -25,12 +38,13 @@ const DAMPING: f64 = 0.75;
 /// Few samples may have met what is rare, or missed it. So the root of the mean of the squares nearby, which is right where there
 /// are enough samples and otherwise led by the one that met something, is moderated by the mean of the roots, which is not, in the geometric
 /// mean of both. And that is taken to the power of 3/4: less than 1, because it is uncertain.
-pub(super) fn deviations(squares: &[f64], width: usize) -> Vec<f64> {
+pub(super) fn deviations(squares: &[f64], board: Board) -> Vec<f64> {
+    let width = board.width;
     let columns = width.div_ceil(SIDE);
     let square = |pixel: usize| pixel / width / SIDE * columns + pixel % width / SIDE;
     let told = COLOURS.map(|other| {
         let of_colour = squares.iter().enumerate();
-        let of_colour = of_colour.filter(|&(pixel, _)| colour(pixel, width) == other);
+        let of_colour = of_colour.filter(|&(pixel, _)| board.colour(pixel) == other);
         let known = of_colour.filter(|(_, square)| square.is_finite());
         let mut table = vec![[0.0; 3]; columns * (squares.len() / width).div_ceil(SIDE)];
         for (pixel, value) in known {
@@ -48,7 +62,7 @@ pub(super) fn deviations(squares: &[f64], width: usize) -> Vec<f64> {
         moderated.collect::<Vec<_>>()
     });
     let pixels = 0..squares.len();
-    let deviation = |pixel| told[1 - colour(pixel, width)][square(pixel)];
+    let deviation = |pixel| told[1 - board.colour(pixel)][square(pixel)];
     pixels.map(deviation).collect()
 }
 
@@ -83,12 +97,28 @@ mod tests {
     use super::*;
     use crate::hash::{hash, unit};
 
+    /// That of single pixels.
+    fn pixels_of(width: usize) -> Board {
+        Board { width, field: 1 }
+    }
+
+    #[test]
+    fn fields_are_as_wide_as_they_are_said_to_be() {
+        let colours = |field| -> Vec<_> {
+            let board = Board { width: 5, field };
+            (0..10).map(|pixel| board.colour(pixel)).collect()
+        };
+        assert_eq!(colours(1), [0, 1, 0, 1, 0, 1, 0, 1, 0, 1]);
+        assert_eq!(colours(2), [0, 0, 1, 1, 0, 1, 1, 0, 0, 1]);
+        assert_eq!(colours(9), [0, 0, 0, 0, 0, 1, 1, 1, 1, 1]);
+    }
+
     #[test]
     fn what_is_even_stays() {
         for [width, height] in [[2, 1], [7, 1], [1, 8], [30, 20]] {
             let mut squares = vec![4.0; width * height];
             let even = |squares: &[f64]| {
-                let found = deviations(squares, width);
+                let found = deviations(squares, pixels_of(width));
                 let expected = 2_f64.powf(0.75);
                 assert!(found.iter().all(|d| (d / expected - 1.0).abs() < 1e-14));
             };
@@ -101,7 +131,7 @@ mod tests {
             }
         }
         // There is no other.
-        assert!(deviations(&[4.0], 1)[0].is_nan());
+        assert!(deviations(&[4.0], pixels_of(1))[0].is_nan());
     }
 
     #[test]
@@ -111,7 +141,7 @@ mod tests {
         let pixel = |x: usize, y: usize| y * width + x;
         // In the middle of a square, which has five pixels of that colour; those beside it have four.
         squares[pixel(151, 151)] = 1.0;
-        let found = deviations(&squares, width);
+        let found = deviations(&squares, pixels_of(width));
         // Binomial weights, of eight coins along each axis. The count is what it is in the mean, up to a tenth of a pixel.
         let middle = 70.0 / 256.0;
         let mean = middle * middle / 4.5;
@@ -130,16 +160,19 @@ mod tests {
         let (width, height) = (13, 8);
         let of_seed = |seed, pixel: usize| unit(hash(seed, pixel as u64)).exp2();
         let squares: Vec<f64> = (0..width * height).map(|k| of_seed(1, k)).collect();
-        let before = deviations(&squares, width);
-        for pixel in 0..squares.len() {
-            let mut changed = squares.clone();
-            changed[pixel] = 1e30;
-            let after = deviations(&changed, width);
-            for (other, (a, b)) in before.iter().zip(&after).enumerate() {
-                let alike = colour(other, width) == colour(pixel, width);
-                assert!(!alike || a.to_bits() == b.to_bits(), "{pixel} {other}");
+        for field in [1, 4, 13] {
+            let board = Board { width, field };
+            let before = deviations(&squares, board);
+            for pixel in 0..squares.len() {
+                let mut changed = squares.clone();
+                changed[pixel] = 1e30;
+                let after = deviations(&changed, board);
+                for (other, (a, b)) in before.iter().zip(&after).enumerate() {
+                    let alike = board.colour(other) == board.colour(pixel);
+                    assert!(!alike || a.to_bits() == b.to_bits(), "{pixel} {other}");
+                }
+                assert_ne!(before, after);
             }
-            assert_ne!(before, after);
         }
     }
 }

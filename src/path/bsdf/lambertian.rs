@@ -63,7 +63,7 @@ impl Lambertian {
 
     /// Whether light is scattered towards `out`, given its cosine.
     #[inline]
-    fn is_seen(&self, cosine: f32) -> bool {
+    pub(in crate::path) fn is_seen(&self, cosine: f32) -> bool {
         self.sides == Sides::Both || cosine > 0.0
     }
 }

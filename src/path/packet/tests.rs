@@ -13,14 +13,16 @@ use crate::path::light::{
     AreaLights, Background, Constant, DirectionalLight, Emission, Emitter, Environment,
     Illumination, Light, LightTree, NoEnvironment, NoLight, PointLight, Sky, Source, Surroundings,
 };
+use crate::path::reuse::{Part, Pixels};
 use crate::path::sensor::Pinhole;
 use crate::path::shape::{Cylinder, Disk, Flat, Mesh, Primitive, Sphere, cuboid};
 use crate::path::texture::{Checkerboard, Parameter, Texture, Uniform};
 use crate::path::{
-    Instances, Object, Paths, Pixel, Scene, Segment, Surface, View, filter::BoxFilter, scenes,
+    Instances, Object, Paths, Pixel, Scene, Segment, Share, Surface, View, filter::BoxFilter,
+    scenes,
 };
-use crate::points::{HashedOwen, PointSet, Sobol};
-use crate::{Error, Integrand, Sampler};
+use crate::points::{HashedOwen, PointSet, Rescrambled, Sobol};
+use crate::{Error, Integrand, NonFinite, Sampler};
 
 /// Every value of `evaluate_many` must be that of `evaluate`, to the bit.
 fn agree<B: Bsdf, L: Light, E: Environment>(view: &View<B, L, E, Pinhole>) {
@@ -47,12 +49,54 @@ fn agree<B: Bsdf, L: Light, E: Environment>(view: &View<B, L, E, Pinhole>) {
             }
         }
     }
+    agree_where_reused(view);
+}
+
+/// So must what pixels give whose paths are reused.
+fn agree_where_reused<B: Bsdf, L: Light, E: Environment>(view: &View<B, L, E, Pinhole>) {
+    let size = [7, 5];
+    let shares = shares();
+    let singly = Pixels {
+        reused_by: 4,
+        rule: NonFinite::Reject,
+        follow: &|runs, groups, traces| view.trace_singly(size, runs, groups, traces),
+        coordinates: &|_, _| Vec::new(),
+    };
+    let singly = singly.parts(&shares, &|share| share.count / 3);
+    assert_eq!(parts_of_pixels(view, 4), singly);
+}
+
+/// What some pixels give whose paths are reused by so many.
+fn parts_of_pixels<B: Bsdf, L: Light, E: Environment>(
+    view: &View<B, L, E, Pinhole>,
+    reused_by: u32,
+) -> Vec<[Part; 2]> {
+    let pixels = Pixels {
+        reused_by,
+        rule: NonFinite::Reject,
+        follow: &|runs, groups, traces| view.trace([7, 5], runs, groups, traces),
+        coordinates: &|_, _| Vec::new(),
+    };
+    pixels.parts(&shares(), &|share| share.count / 3)
+}
+
+fn shares() -> Vec<Share<Rescrambled>> {
+    (0..14)
+        .zip([17, 0, 40, 150, 16, 33, 64].into_iter().cycle())
+        .map(|(place, count)| Share {
+            position: [place % 7, 1 + place / 7],
+            points: Rescrambled::new(4, place.into()).unwrap(),
+            count,
+        })
+        .collect()
 }
 
 #[test]
 fn packets_give_the_bits_of_single_paths_in_the_cornell_box() {
     let mut view = scenes::cornell_box();
     agree(&view);
+    let alone = parts_of_pixels(&view, 1);
+    assert_ne!(parts_of_pixels(&view, 4), alone, "nothing is reused");
     for longest in [1, 2, 8] {
         view.paths = Paths::default().longest(longest).unwrap();
         agree(&view);

@@ -11,6 +11,7 @@ use super::drawn::{Draws, Hits, Illuminated, Scatters, Weights};
 use super::lamp::Lamp;
 use super::math::{around, cosine_hemisphere, power};
 use super::optics::{DELTA, OTHER, VARYING};
+use super::reuse::{AtPoints, Keeper};
 use super::solids::{Rays, passes};
 use super::sweep::Shapes;
 use super::{Packet, Single, Start};
@@ -32,6 +33,7 @@ pub(super) struct Walk<'a, U, const PLAIN: bool> {
     pub(super) start: &'a dyn Fn(usize, &mut U) -> Start,
     pub(super) points: &'a mut [U],
     pub(super) values: &'a mut [Vec3],
+    pub(super) keeper: Option<Keeper<'a>>,
 }
 
 /// What the loop over single paths keeps in its variables, of each lane's path.
@@ -77,8 +79,13 @@ impl State {
     }
 
     #[inline(always)]
+    fn radiance(&self, lane: usize) -> Vec3A {
+        Row::vector(&self.radiance, lane)
+    }
+
+    #[inline(always)]
     fn value(&self, lane: usize) -> Vec3 {
-        Vec3::from(Row::vector(&self.radiance, lane)) * self.weight.0[lane]
+        Vec3::from(self.radiance(lane)) * self.weight.0[lane]
     }
 }
 
@@ -97,7 +104,14 @@ impl<U: Sampler, const PLAIN: bool> WithSimd for Walk<'_, U, PLAIN> {
                     continue;
                 }
                 if let Some(value) = self.values.get_mut(state.point[lane]) {
-                    *value = state.value(lane);
+                    match &mut self.keeper {
+                        Some(keeper) => keeper.end(
+                            state.point[lane],
+                            state.radiance(lane),
+                            state.weight.0[lane],
+                        ),
+                        None => *value = state.value(lane),
+                    }
                     state.point[lane] = usize::MAX;
                     running -= 1;
                 }
@@ -117,13 +131,13 @@ impl<U: Sampler, const PLAIN: bool> WithSimd for Walk<'_, U, PLAIN> {
 }
 
 /// What is known of the laws where the paths are.
-struct Laws<'a, S: Simd> {
+pub(super) struct Laws<'a, S: Simd> {
     /// The normal that light is scattered by.
-    shading: Vector<S>,
+    pub(super) shading: Vector<S>,
     /// The cosine between it and the way that the path came.
-    facing: Real<S>,
+    pub(super) facing: Real<S>,
     /// Of the ideally diffuse law.
-    albedo: Vector<S>,
+    pub(super) albedo: Vector<S>,
     /// Where the law is another, which is asked by the points.
     other: Mask<S>,
     hits: Option<&'a Hits<'a>>,
@@ -247,6 +261,24 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             other: kind.ge(Real::splat(simd, OTHER)),
             hits: hits.as_ref(),
         };
+
+        if let Some(keeper) = &mut self.keeper {
+            let at_points = AtPoints {
+                segment: &state.segment,
+                point: &state.point,
+                diffuse: walking & !at.other,
+            };
+            let second = keeper.keep(simd, &at_points, &here, &at, radiance);
+            // The colour of the first point is another for each pixel; the path is no less likely to go on than it was.
+            radiance = second.choose(Vector::splat(simd, Vec3A::ZERO), radiance);
+            let grey = throughput.max_element();
+            let grey = Vector {
+                x: grey,
+                y: grey,
+                z: grey,
+            };
+            throughput = second.choose(grey, throughput);
+        }
 
         let mut draws = Draws {
             chosen: packet.first_light(),

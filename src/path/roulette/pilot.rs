@@ -10,22 +10,32 @@ use crate::path::filter::Filter;
 use crate::path::light::{Environment, Light};
 use crate::path::render::check_size;
 use crate::path::sensor::Sensor;
-use crate::path::{Paths, View};
+use crate::path::{Paths, Vertex, View};
 use crate::points::{Independent, PointSet, pixel};
 use crate::{Error, Moments, Sampler, each};
 
 /// Looks on while a path is followed.
 pub(in crate::path) trait Witness {
+    /// The path is at a point that may scatter light, seen from `out`: what it carries, and what it has gathered.
+    #[inline(always)]
+    fn scatters<B: Bsdf>(
+        &mut self,
+        _segment: u32,
+        _vertex: &Vertex<'_, B>,
+        _out: Vec3A,
+        _throughput: &mut Vec3A,
+        _radiance: &mut Vec3A,
+    ) {
+    }
+
     /// The path goes on after a segment: what it carried before the roulette, the weight the roulette gave it, and what it has
     /// gathered.
-    fn goes_on(&mut self, segment: u32, carried: f32, weight: f32, radiance: Vec3A);
+    #[inline(always)]
+    fn goes_on(&mut self, _segment: u32, _carried: f32, _weight: f32, _radiance: Vec3A) {}
 }
 
 /// Nobody looks on.
-impl Witness for () {
-    #[inline(always)]
-    fn goes_on(&mut self, _: u32, _: f32, _: f32, _: Vec3A) {}
-}
+impl Witness for () {}
 
 /// The steps of a path, in their order.
 #[derive(Default)]

@@ -1,0 +1,525 @@
+//! Paths that the pixels nearby use too.
+//!
+//! A path that is scattered ideally diffusely at its first two points could have come from the first point of a neighbour's path as well:
+//! what leaves the second point is the same, and the way there is the one thing to be looked at. So pixels that go together give the light of each
+//! second point to all of their first points that see it, weighted by the balance heuristic: that of one pixel goes with the density with which its
+//! own path would have come there, over the sum of those of all of them. The mean of each pixel is what it was, and its paths beyond
+//! the second point are as many as those of all pixels together.
+
+mod means;
+
+use core::ops::Range;
+
+use glam::{Vec3, Vec3A};
+
+use super::bsdf::Bsdf;
+use super::roulette::{Rule, Witness};
+use super::{Detail, Segment, Surface, Vertex};
+
+pub(in crate::path) use means::{Group, Part, Pixels, Run};
+
+/// The most pixels that go together.
+pub(in crate::path) const MOST: usize = 16;
+
+/// Pixels that go together are drawn from so many times as many columns.
+pub(in crate::path) const SPREAD: u32 = 4;
+
+/// How many slots are together.
+pub(in crate::path) const WIDTH: usize = 16;
+
+/// A number for each slot.
+pub(in crate::path) type Numbers = [f32; WIDTH];
+
+/// A vector for each slot.
+pub(in crate::path) type Vectors = [Numbers; 3];
+
+/// What is kept of paths, each in a slot of its own.
+#[derive(Debug, Default)]
+pub(in crate::path) struct Traces {
+    pub(in crate::path) slots: Vec<Slots>,
+}
+
+/// What is kept of as many paths as are together: numbers beside one another, so that vectors of any width read them.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub(in crate::path) struct Slots {
+    pub(in crate::path) first: Points,
+    /// Of the first point.
+    pub(in crate::path) albedo: Vectors,
+    /// The probability with which the roulette lets a path go on from there.
+    pub(in crate::path) survival: Numbers,
+    pub(in crate::path) second: Points,
+    /// The radiance of the pixel that is its own; in the end all of it.
+    pub(in crate::path) own: Vectors,
+    /// What leaves the second point, times the largest component of the albedo of the first over its survival.
+    pub(in crate::path) light: Vectors,
+    /// What the path counts in its pixel.
+    pub(in crate::path) weight: Numbers,
+}
+
+/// Points that scatter light ideally diffusely.
+#[derive(Clone, Debug)]
+pub(in crate::path) struct Points {
+    /// 1 where there is one, 0 elsewhere, where all else is anything.
+    pub(in crate::path) known: Numbers,
+    pub(in crate::path) point: Vectors,
+    pub(in crate::path) normal: Vectors,
+    pub(in crate::path) margin: Numbers,
+    /// The normal that light is scattered by, on the side that the path came from.
+    pub(in crate::path) shading: Vectors,
+}
+
+/// A point that scatters light ideally diffusely.
+#[derive(Clone, Copy)]
+pub(in crate::path) struct Diffuse {
+    pub(in crate::path) surface: Surface,
+    pub(in crate::path) shading: Vec3A,
+}
+
+const NUMBERS: Numbers = [0.0; WIDTH];
+const VECTORS: Vectors = [NUMBERS; 3];
+
+impl Points {
+    const NONE: Self = Self {
+        known: NUMBERS,
+        point: VECTORS,
+        normal: VECTORS,
+        margin: NUMBERS,
+        shading: VECTORS,
+    };
+
+    #[inline]
+    fn is_known(&self, slot: usize) -> bool {
+        self.known[slot % WIDTH] > 0.0
+    }
+
+    #[inline]
+    fn set(&mut self, slot: usize, Diffuse { surface, shading }: Diffuse) {
+        self.known[slot % WIDTH] = 1.0;
+        set_vector(&mut self.point, slot, surface.point);
+        set_vector(&mut self.normal, slot, surface.normal);
+        self.margin[slot % WIDTH] = surface.margin;
+        set_vector(&mut self.shading, slot, shading);
+    }
+
+    fn get(&self, slot: usize) -> Option<Diffuse> {
+        let surface = Surface {
+            point: vector(&self.point, slot),
+            normal: vector(&self.normal, slot),
+            margin: self.margin[slot % WIDTH],
+            detail: (),
+        };
+        self.is_known(slot).then(|| Diffuse {
+            surface,
+            shading: vector(&self.shading, slot),
+        })
+    }
+}
+
+#[inline]
+fn set_vector(vectors: &mut Vectors, slot: usize, vector: Vec3A) {
+    for (numbers, component) in vectors.iter_mut().zip(vector.to_array()) {
+        numbers[slot % WIDTH] = component;
+    }
+}
+
+#[inline]
+fn vector([x, y, z]: &Vectors, slot: usize) -> Vec3A {
+    Vec3A::new(x[slot % WIDTH], y[slot % WIDTH], z[slot % WIDTH])
+}
+
+impl Slots {
+    const EMPTY: Self = Self {
+        first: Points::NONE,
+        albedo: VECTORS,
+        survival: NUMBERS,
+        second: Points::NONE,
+        own: VECTORS,
+        light: VECTORS,
+        weight: NUMBERS,
+    };
+}
+
+impl Traces {
+    /// Room for so many paths, of which nothing is known.
+    pub(in crate::path) fn clear(&mut self, slots: usize) {
+        self.slots.resize(slots.div_ceil(WIDTH), Slots::EMPTY);
+        for slots in &mut self.slots {
+            (slots.first.known, slots.second.known) = (NUMBERS, NUMBERS);
+        }
+    }
+
+    /// What is kept of a path and those beside it.
+    #[inline]
+    pub(in crate::path) fn of(&self, slot: usize) -> &Slots {
+        &self.slots[slot / WIDTH]
+    }
+
+    #[inline]
+    pub(in crate::path) fn of_mut(&mut self, slot: usize) -> &mut Slots {
+        &mut self.slots[slot / WIDTH]
+    }
+
+    /// Whether the first point of a path is known, and the second one is to be.
+    #[inline]
+    pub(in crate::path) fn has_first(&self, slot: usize) -> bool {
+        self.of(slot).first.is_known(slot)
+    }
+
+    /// The first point of a path.
+    #[inline]
+    pub(in crate::path) fn set_first(
+        &mut self,
+        slot: usize,
+        point: Diffuse,
+        albedo: Vec3A,
+        roulette: &Rule,
+    ) {
+        let slots = self.of_mut(slot);
+        slots.first.set(slot, point);
+        slots.survival[slot % WIDTH] = roulette.chance(1, albedo.max_element());
+        set_vector(&mut slots.albedo, slot, albedo);
+    }
+
+    /// The second point of a path, which has gathered `own`.
+    #[inline]
+    pub(in crate::path) fn set_second(&mut self, slot: usize, point: Diffuse, own: Vec3A) {
+        let slots = self.of_mut(slot);
+        slots.second.set(slot, point);
+        set_vector(&mut slots.own, slot, own);
+    }
+
+    /// The end of a path: what it has gathered, after its second point if that is known.
+    #[inline]
+    pub(in crate::path) fn end(&mut self, slot: usize, radiance: Vec3A, weight: f32) {
+        let slots = self.of_mut(slot);
+        let gathered = match slots.second.is_known(slot) {
+            true => &mut slots.light,
+            false => &mut slots.own,
+        };
+        set_vector(gathered, slot, radiance);
+        slots.weight[slot % WIDTH] = weight;
+    }
+
+    /// What the paths of some slots in a row count in their pixel.
+    pub(in crate::path) fn values(&self, slots: Range<usize>) -> impl Iterator<Item = Vec3> {
+        slots.map(|slot| vector(&self.of(slot).own, slot).into())
+    }
+
+    /// Gives the light of each second point of a group to all first points of the same round, and makes `own` the value of each path.
+    /// `occluded` tells whether anything is in the way.
+    pub(in crate::path) fn share(&mut self, group: &Group, occluded: &dyn Fn(&Segment) -> bool) {
+        for round in 0..group.rounds {
+            let slot = |pixel| group.slot(pixel, round);
+            let albedo = |of: &Self, pixel| vector(&of.of(slot(pixel)).albedo, slot(pixel));
+            let survival = |of: &Self, pixel| of.of(slot(pixel)).survival[slot(pixel) % WIDTH];
+            let mut sums = [Vec3A::ZERO; MOST];
+            for giver in 0..group.pixels {
+                let Some(second) = self.of(slot(giver)).second.get(slot(giver)) else {
+                    continue;
+                };
+                let light = vector(&self.of(slot(giver)).light, slot(giver));
+                let largest = albedo(self, giver).max_element();
+                let light = light * (survival(self, giver) / largest);
+                let mut densities = [0.0; MOST];
+                let mut sum = 0.0;
+                for (taker, density) in densities[..group.pixels].iter_mut().enumerate() {
+                    if let Some(first) = self.of(slot(taker)).first.get(slot(taker)) {
+                        *density = match taker == giver {
+                            true => found(&first, &second),
+                            false => visible(&first, &second, occluded),
+                        };
+                        sum += *density * survival(self, taker);
+                    }
+                }
+                for (taker, density) in densities[..group.pixels].iter().enumerate() {
+                    if *density > 0.0 {
+                        sums[taker] += light * albedo(self, taker) * (density / sum);
+                    }
+                }
+            }
+            for (pixel, sum) in sums[..group.pixels].iter().enumerate() {
+                let slot = slot(pixel);
+                let slots = self.of_mut(slot);
+                let value = (vector(&slots.own, slot) + *sum) * slots.weight[slot % WIDTH];
+                set_vector(&mut slots.own, slot, value);
+            }
+        }
+    }
+}
+
+/// The density per area, up to a factor, with which light of one point would be looked for at another, whatever is between them.
+fn density(first: &Diffuse, second: &Diffuse) -> f32 {
+    let toward = second.surface.point - first.surface.point;
+    let squared = toward.dot(toward);
+    let cosine = first.shading.dot(toward);
+    let other = second.surface.normal.dot(toward).abs();
+    (cosine / squared) * (other / squared)
+}
+
+/// That where the path has been found to be there, however its points are rounded.
+fn found(first: &Diffuse, second: &Diffuse) -> f32 {
+    clamped(density(first, second)).max(f32::MIN_POSITIVE)
+}
+
+/// That where the path must be looked for, and would have met the same side: else 0.
+fn visible(first: &Diffuse, second: &Diffuse, occluded: &dyn Fn(&Segment) -> bool) -> f32 {
+    let toward = second.surface.point - first.surface.point;
+    let density = density(first, second);
+    if !(density > 0.0 && second.shading.dot(-toward) > 0.0) {
+        return 0.0;
+    }
+    match Segment::between(&first.surface, &second.surface) {
+        Some(way) if !occluded(&way) => clamped(density),
+        _ => 0.0,
+    }
+}
+
+/// A number whose sum is finite.
+fn clamped(density: f32) -> f32 {
+    density.min(HIGHEST)
+}
+
+/// The largest density that is told from others.
+pub(in crate::path) const HIGHEST: f32 = 1e36;
+
+/// Whether a first point of this albedo can give light and take it: not where there is nothing to divide by.
+pub(in crate::path) const DARKEST: f32 = f32::MIN_POSITIVE;
+
+/// Keeps what is to be kept of one path.
+pub(in crate::path) struct Tracer<'a> {
+    pub(in crate::path) traces: &'a mut Traces,
+    pub(in crate::path) roulette: &'a Rule,
+    pub(in crate::path) slot: usize,
+}
+
+impl Tracer<'_> {
+    /// The end of the path.
+    pub(in crate::path) fn end(&mut self, radiance: Vec3, weight: f32) {
+        self.traces.end(self.slot, radiance.into(), weight);
+    }
+}
+
+impl Witness for Tracer<'_> {
+    fn scatters<B: Bsdf>(
+        &mut self,
+        segment: u32,
+        vertex: &Vertex<'_, B>,
+        out: Vec3A,
+        throughput: &mut Vec3A,
+        radiance: &mut Vec3A,
+    ) {
+        if segment > 2 || segment == 2 && !self.traces.has_first(self.slot) {
+            return;
+        }
+        let Some(law) = vertex.bsdf.lambertian_at(&vertex.surface) else {
+            return;
+        };
+        let normal = vertex.surface.detail.normal(vertex.surface.normal);
+        let facing = normal.dot(out);
+        if !law.is_seen(facing) || law.albedo.max_element() < DARKEST {
+            return;
+        }
+        let point = Diffuse {
+            surface: *vertex.place(),
+            shading: normal * 1.0_f32.copysign(facing),
+        };
+        if segment == 1 {
+            (self.traces).set_first(self.slot, point, law.albedo, self.roulette);
+        } else {
+            self.traces.set_second(self.slot, point, *radiance);
+            // The colour of the first point is another for each pixel; the path is no less likely to go on than it was.
+            *radiance = Vec3A::ZERO;
+            *throughput = Vec3A::splat(throughput.max_element());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point at `point`, seen from the side of its normal.
+    fn diffuse(point: [f32; 3], normal: Vec3A) -> Diffuse {
+        Diffuse {
+            surface: Surface {
+                point: point.into(),
+                normal,
+                margin: 1e-6,
+                detail: (),
+            },
+            shading: normal,
+        }
+    }
+
+    const ALBEDOS: [[f32; 3]; 3] = [[0.5, 0.25, 0.0], [0.2, 0.4, 0.8], [1.0; 3]];
+    /// Paths go on from the first point.
+    const ALWAYS: Rule = Rule::of_throughput(5);
+    const LIGHT: Vec3A = Vec3A::new(1.0, 2.0, 3.0);
+
+    /// Three pixels with first points on the floor, below and beside the one second point, of the first of them, at the ceiling.
+    fn traces() -> (Traces, Group) {
+        let group = Group {
+            pixels: 3,
+            rounds: WIDTH,
+            slot: WIDTH,
+        };
+        let mut traces = Traces::default();
+        traces.clear(4 * WIDTH);
+        for (pixel, x) in [0.0, 1.0, 2.0].into_iter().enumerate() {
+            let slot = group.slot(pixel, 5);
+            let point = diffuse([x, 0.0, 0.0], Vec3A::Z);
+            traces.set_first(slot, point, ALBEDOS[pixel].into(), &ALWAYS);
+            if pixel == 0 {
+                traces.set_second(slot, diffuse([0.0, 0.0, 2.0], -Vec3A::Z), Vec3A::splat(7.0));
+                traces.end(slot, LIGHT * 0.5, 2.0);
+            } else {
+                traces.end(slot, Vec3A::splat(x), 1.0);
+            }
+        }
+        (traces, group)
+    }
+
+    fn value(traces: &Traces, group: &Group, pixel: usize) -> Vec3A {
+        let slot = group.slot(pixel, 5);
+        traces.values(slot..slot + 1).next().unwrap().into()
+    }
+
+    /// Cosines and distances by hand: 1 and 4, 2 over the root of 5 and 5, the root of 1/2 and 8.
+    const DENSITIES: [f32; 3] = [1.0 / 4.0, 4.0 / 5.0 / 5.0, 0.5 / 8.0];
+
+    fn close(found: Vec3A, expected: Vec3A) {
+        assert!(
+            (found - expected).length() < 1e-6 * expected.length(),
+            "{found} {expected}"
+        );
+    }
+
+    #[test]
+    fn light_goes_to_all_that_see_it_by_their_densities() {
+        let (mut traces, group) = traces();
+        traces.share(&group, &|_| false);
+        let sum: f32 = DENSITIES.iter().sum();
+        let given = |pixel: usize| LIGHT * Vec3A::from(ALBEDOS[pixel]) * (DENSITIES[pixel] / sum);
+        close(
+            value(&traces, &group, 0),
+            (Vec3A::splat(7.0) + given(0)) * 2.0,
+        );
+        close(value(&traces, &group, 1), Vec3A::splat(1.0) + given(1));
+        close(value(&traces, &group, 2), Vec3A::splat(2.0) + given(2));
+    }
+
+    /// Directions are drawn around the normal of shading, and meet areas that their own normals tell.
+    #[test]
+    fn shading_is_of_the_first_point_alone() {
+        let tilted = Vec3A::new(0.6, 0.0, 0.8);
+        let mut first = diffuse([0.0; 3], Vec3A::Z);
+        let mut second = diffuse([0.0, 0.0, 2.0], -Vec3A::Z);
+        (first.shading, second.shading) = (tilted, -tilted);
+        assert!((density(&first, &second) / (0.8 / 4.0) - 1.0).abs() < 1e-6);
+        second.surface.normal = -tilted;
+        assert!((density(&first, &second) / (0.64 / 4.0) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_in_the_way_leaves_more_to_the_others() {
+        let (mut traces, group) = traces();
+        // Nobody looks at the way that was found already.
+        traces.share(&group, &|way| {
+            assert!(way.ray.origin.x > 0.5, "{way:?}");
+            way.ray.origin.x > 1.5
+        });
+        let sum = DENSITIES[0] + DENSITIES[1];
+        let given = |pixel: usize| LIGHT * Vec3A::from(ALBEDOS[pixel]) * (DENSITIES[pixel] / sum);
+        close(
+            value(&traces, &group, 0),
+            (Vec3A::splat(7.0) + given(0)) * 2.0,
+        );
+        close(value(&traces, &group, 1), Vec3A::splat(1.0) + given(1));
+        close(value(&traces, &group, 2), Vec3A::splat(2.0));
+    }
+
+    #[test]
+    fn nothing_is_given_to_other_sides_and_other_rounds() {
+        for away in [
+            // Below the second point's surface, the first point's horizon, and in another round.
+            Some(diffuse([1.0, 0.0, 3.0], -Vec3A::Z)),
+            Some(diffuse([1.0, 0.0, 0.0], -Vec3A::Z)),
+            None,
+        ] {
+            let (mut traces, group) = traces();
+            for pixel in [1, 2] {
+                let slot = group.slot(pixel, 5);
+                traces.of_mut(slot).first.known[slot % WIDTH] = 0.0;
+                match away {
+                    Some(point) => traces.set_first(slot, point, Vec3A::ONE, &ALWAYS),
+                    None => {
+                        let point = diffuse([1.0, 0.0, 0.0], Vec3A::Z);
+                        traces.set_first(slot + 1, point, Vec3A::ONE, &ALWAYS);
+                    }
+                }
+            }
+            traces.share(&group, &|way| panic!("{way:?}"));
+            let own = LIGHT * Vec3A::from(ALBEDOS[0]);
+            close(value(&traces, &group, 0), (Vec3A::splat(7.0) + own) * 2.0);
+            close(value(&traces, &group, 1), Vec3A::splat(1.0));
+        }
+    }
+
+    /// A dark pixel, whose paths rarely go on and are bright then, and a bright one.
+    #[test]
+    fn what_the_roulette_lets_go_on_is_not_brighter_than_its_light() {
+        let roulette = Rule::of_throughput(1);
+        let group = Group {
+            pixels: 2,
+            rounds: WIDTH,
+            slot: 0,
+        };
+        let mut traces = Traces::default();
+        traces.clear(2 * WIDTH);
+        let albedos = [0.05, 0.7].map(Vec3A::splat);
+        for (pixel, albedo) in albedos.into_iter().enumerate() {
+            let point = diffuse([0.0; 3], Vec3A::Z);
+            traces.set_first(group.slot(pixel, 5), point, albedo, &roulette);
+            traces.end(group.slot(pixel, 5), Vec3A::ZERO, 1.0);
+        }
+        let slot = group.slot(0, 5);
+        traces.set_second(slot, diffuse([0.0, 0.0, 2.0], -Vec3A::Z), Vec3A::ZERO);
+        // What is carried to the second point is the albedo over the probability: one.
+        traces.end(slot, LIGHT, 1.0);
+        traces.share(&group, &|_| false);
+        // The densities are alike but for the survival.
+        for (pixel, albedo) in albedos.into_iter().enumerate() {
+            close(value(&traces, &group, pixel), LIGHT * albedo / 0.75);
+        }
+    }
+
+    /// However near or far points are.
+    #[test]
+    fn no_distance_loses_light() {
+        for exponent in -30..=37 {
+            let size = 10_f32.powi(exponent);
+            let group = Group {
+                pixels: 2,
+                rounds: WIDTH,
+                slot: 0,
+            };
+            let mut traces = Traces::default();
+            traces.clear(2 * WIDTH);
+            for pixel in 0..2 {
+                let mut point = diffuse([0.0; 3], Vec3A::Z);
+                point.surface.margin = 0.0;
+                traces.set_first(group.slot(pixel, 0), point, Vec3A::ONE, &ALWAYS);
+                let mut other = diffuse([0.0, 0.0, size], -Vec3A::Z);
+                other.surface.margin = 0.0;
+                traces.set_second(group.slot(pixel, 0), other, Vec3A::ZERO);
+                traces.end(group.slot(pixel, 0), Vec3A::splat(3.0), 1.0);
+            }
+            traces.share(&group, &|_| false);
+            for pixel in 0..2 {
+                let value = traces.values(group.slot(pixel, 0)..group.slot(pixel, 0) + 1);
+                assert_eq!(value.collect::<Vec<_>>(), [Vec3::splat(3.0)], "{size}");
+            }
+        }
+    }
+}

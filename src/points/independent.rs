@@ -94,11 +94,10 @@ impl Independent {
 #[inline(always)]
 fn narrow(points: &Independent, block: &mut Block<'_>, columns: &[u64], start: usize) {
     let rows = LANES / columns.len();
-    let mut words = [0; LANES];
+    let (mut common, mut words) = ([0; LANES], [0; LANES]);
     let mut index = block.first;
     for out in block.out.chunks_mut(rows * block.width) {
         let rows = out.len() / block.width;
-        let mut common = [0; LANES];
         for (common, row) in common[..rows].iter_mut().zip(0..) {
             *common = points.row(index.wrapping_add(row));
         }

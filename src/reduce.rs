@@ -1,14 +1,12 @@
 //! The only parallel loop: jobs are fixed by the count alone and their results taken in the order of
 //! their indices, so that neither the number of threads nor the feature `parallel` changes a bit.
 
-use core::ops::Range;
 #[cfg(feature = "parallel")]
-use std::sync::Mutex;
-
-/// Jobs whose results are held at once: few at first, so that a run that has to stop early does so; then more,
-/// enough to keep any machine busy and few enough to bound the memory.
-const FIRST_WAVE: u64 = 16;
-const LARGEST_WAVE: u64 = 1024;
+mod threads;
+#[cfg(feature = "parallel")]
+pub(crate) use threads::{both, inside};
+#[cfg(feature = "parallel")]
+use threads::{number, take_in_order};
 
 /// Runs `job` for `0..count` and hands the results to `take` in the order of their indices.
 ///
@@ -19,17 +17,21 @@ pub(crate) fn in_order<T: Send, E: Send>(
     mut take: impl FnMut(T) -> Result<(), E> + Send,
 ) -> Result<(), E> {
     // One after the other each is taken at once, with what it holds in the nearest caches.
-    if count == 1 || threads() == 1 {
+    if count <= 1 || number() == 1 {
         return (0..count).try_for_each(|index| take(job(index)));
     }
+    /// Jobs whose results are held at once at most: enough to keep any machine busy, few enough to bound the memory.
+    const WAVE: u64 = 1024;
     let mut outcome = Ok(());
     inside(&mut || {
-        let (mut first, mut length) = (0, FIRST_WAVE);
+        let mut first = 0;
         while first < count && outcome.is_ok() {
-            let last = count.min(first.saturating_add(length));
-            outcome = wave(first..last, &job).into_iter().try_for_each(&mut take);
+            let last = count.min(first.saturating_add(WAVE));
+            take_in_order(first..last, &job, &mut |value| {
+                outcome = take(value);
+                outcome.is_ok()
+            });
             first = last;
-            length = LARGEST_WAVE.min(2 * length);
         }
     });
     outcome
@@ -53,60 +55,68 @@ pub(crate) fn in_order<T: Send, E: Send>(
 ///
 /// If `count` values do not fit into memory, of which each takes up to 24 bytes more while they are computed.
 pub fn each<T: Send>(count: u64, job: impl Fn(u64) -> T + Sync) -> Vec<T> {
-    wave(0..count, &job)
+    if count <= 1 || number() == 1 {
+        return (0..count).map(job).collect();
+    }
+    let length = usize::try_from(count).expect("values that memory can hold");
+    let mut values = Vec::with_capacity(length);
+    take_in_order(0..count, &job, &mut |value| {
+        values.push(value);
+        true
+    });
+    values
 }
 
-// Work and jobs are behind pointers, so that what runs them is compiled once, not for every integrand.
+/// What `job` gives for one block of `items` after the other, in order; it is told which. The blocks are the same for any
+/// number of threads, and long enough for work of a few nanoseconds an item.
+pub(crate) fn in_blocks<S: Sync, T: Send>(
+    items: &[S],
+    job: impl Fn(usize, &[S]) -> T + Sync,
+) -> Vec<T> {
+    const BLOCK: usize = 1024;
+    let blocks: Vec<&[S]> = items.chunks(BLOCK).collect();
+    at_each(&blocks, |place, block| job(place, block))
+}
+
+/// What `job` gives for each of `items`, in order; it is told which.
+pub(crate) fn at_each<S: Sync, T: Send>(
+    items: &[S],
+    job: impl Fn(usize, &S) -> T + Sync,
+) -> Vec<T> {
+    each(items.len() as u64, |index| {
+        let place = usize::try_from(index).expect("below a length");
+        job(place, &items[place])
+    })
+}
+
+// Without threads.
 
 /// How many jobs can run at a time.
-fn threads() -> usize {
-    #[cfg(feature = "parallel")]
-    return rayon::current_num_threads();
-    #[cfg(not(feature = "parallel"))]
+#[cfg(not(feature = "parallel"))]
+fn number() -> usize {
     1
 }
 
-/// Runs `work` on a thread of rayon's current pool, so that its waves need not change threads each.
-#[cfg(feature = "parallel")]
-fn inside(work: &mut (dyn FnMut() + Send)) {
-    rayon::scope(|_| work());
-}
-
+/// Runs `work`.
 #[cfg(not(feature = "parallel"))]
-fn inside(work: &mut (dyn FnMut() + Send)) {
+pub(crate) fn inside(work: &mut (dyn FnMut() + Send)) {
     work();
 }
 
-/// The values of `job`, in order. Each is put into a place of its own, so that only what fills the places is compiled
-/// for a type of values.
-#[cfg(feature = "parallel")]
-fn wave<T: Send>(jobs: Range<u64>, job: &(dyn Fn(u64) -> T + Sync)) -> Vec<T> {
-    if threads() == 1 {
-        return jobs.map(job).collect();
-    }
-    let length = usize::try_from(jobs.end - jobs.start).expect("results that memory can hold");
-    let places: Vec<Mutex<Option<T>>> = (0..length).map(|_| Mutex::new(None)).collect();
-    at_all(length, &|place| {
-        let value = job(jobs.start + place as u64);
-        *places[place].lock().expect("nobody panics with it") = Some(value);
-    });
-    let values = places
-        .into_iter()
-        .map(|place| place.into_inner().expect("nobody panics with it"));
-    values
-        .map(|value| value.expect("every job has run"))
-        .collect()
-}
-
-#[cfg(feature = "parallel")]
-fn at_all(length: usize, job: &(dyn Fn(usize) + Sync)) {
-    use rayon::iter::{IntoParallelIterator, ParallelIterator};
-    (0..length).into_par_iter().for_each(job);
-}
-
+/// The values of two jobs.
 #[cfg(not(feature = "parallel"))]
-fn wave<T: Send>(jobs: Range<u64>, job: &(dyn Fn(u64) -> T + Sync)) -> Vec<T> {
-    jobs.map(job).collect()
+pub(crate) fn both<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> (A, B) {
+    (one(), other())
+}
+
+/// Hands the values of `job` to `take`, in order, until it returns `false`.
+#[cfg(not(feature = "parallel"))]
+fn take_in_order<T>(
+    jobs: core::ops::Range<u64>,
+    job: &dyn Fn(u64) -> T,
+    take: &mut dyn FnMut(T) -> bool,
+) {
+    let _ = jobs.map(job).all(take);
 }
 
 #[cfg(test)]

@@ -5,9 +5,12 @@ use std::collections::BTreeMap;
 use crate::block::Block;
 use crate::{Moments, Value};
 
+mod apportion;
+mod parts;
 mod together;
 mod walk;
 
+pub(crate) use apportion::{apportion, evenly};
 pub(crate) use together::Stratified;
 pub(crate) use walk::{Look, Rows, Run, Visitor, Walk};
 
@@ -110,53 +113,5 @@ impl<V: Value> Visited<V> {
     /// Ready for the next walk through the same strata.
     pub(crate) fn again(&mut self) {
         self.parts = 0;
-    }
-}
-
-/// Shares `count` points out in proportion to `scores`, two to each at the least. The rounding is carried on from one to the
-/// next, so that none are lost; scores that are all zero share evenly.
-///
-/// There must be two points for each.
-pub(crate) fn apportion(scores: &[f64], count: u64) -> Vec<u64> {
-    let sum: f64 = scores.iter().sum();
-    let free = count.saturating_sub(2 * scores.len() as u64);
-    let even = 1.0 / scores.len() as f64;
-    let (mut share, mut given) = (0.0, 0);
-    scores
-        .iter()
-        .map(|score| {
-            share += if sum > 0.0 && sum.is_finite() {
-                score / sum
-            } else {
-                even
-            };
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a part of the count"
-            )]
-            let down = (share * free as f64) as u64;
-            // To the nearest; `f64::round` is a call of a function, which takes as long as the rest.
-            let up = share * free as f64 - down as f64 >= 0.5;
-            let end = down.saturating_add(up.into()).clamp(given, free);
-            let here = end - given;
-            given = end;
-            2 + here
-        })
-        .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_are_shared_out_to_the_last() {
-        assert_eq!(apportion(&[1.0, 1.0, 1.0], 10), [3, 4, 3]);
-        assert_eq!(apportion(&[0.0, 0.0], 5), [3, 2]);
-        assert_eq!(apportion(&[0.0, 3.0, 1.0], 14), [2, 8, 4]);
-        assert_eq!(apportion(&[f64::INFINITY, 1.0], 4), [2, 2]);
-        let many = apportion(&[0.1; 1000], 12_345);
-        assert_eq!(many.iter().sum::<u64>(), 12_345);
     }
 }

@@ -3,7 +3,7 @@
 use crate::evaluate::Wide;
 use crate::points::Independent;
 use crate::progressive::at_once;
-use crate::stratum::{Rows, Stratified, Visited, Walk, apportion};
+use crate::stratum::{Rows, Stratified, Visited, Walk, apportion, evenly};
 use crate::{
     Error, Estimate, Estimator, Integrand, NonFinite, Outcome, Progressive, Stop, Value, hash,
 };
@@ -197,27 +197,19 @@ impl Strata {
             .iter()
             .fold(V::ZERO, |largest, s| largest.zip(*s, f64::max));
         // One number for all components, each on its own scale.
-        let scores: Vec<f64> = deviations
-            .iter()
-            .map(|deviation| {
-                let mut square = 0.0;
-                let _ = deviation.zip(largest, |s, largest| {
-                    if largest > 0.0 {
-                        square += (s / largest).powi(2);
-                    }
-                    s
-                });
-                f64::sqrt(square)
-            })
-            .collect();
-        // One point in ten is spread evenly.
-        let sum: f64 = scores.iter().sum();
-        let even = sum / self.strata as f64;
-        let scores: Vec<f64> = scores
-            .iter()
-            .map(|score| 0.1 * even + 0.9 * score)
-            .collect();
-        apportion(&scores, count)
+        let score = |deviation: &V| {
+            let mut square = 0.0;
+            let _ = deviation.zip(largest, |s, largest| {
+                if largest > 0.0 {
+                    square += (s / largest).powi(2);
+                }
+                s
+            });
+            f64::sqrt(square)
+        };
+        /// This part is spread evenly.
+        const EVEN: f64 = 0.1;
+        apportion(&deviations, score, EVEN, count)
     }
 }
 
@@ -267,7 +259,7 @@ impl Progressive for Strata {
             }
             self.allocate(&pilot.visited, self.count - spent)
         } else {
-            apportion(&vec![1.0; self.strata], self.count)
+            evenly(self.strata, self.count)
         };
         self.go_on(main, counts, self.seed, integrand, evaluations - spent)
     }

@@ -8,7 +8,7 @@ use crate::stratum::Stratified;
 use crate::warning::Warning;
 use crate::{
     Error, ErrorBar, Estimate, Estimator, Incomplete, Integrand, NonFinite, Outcome, Progressive,
-    Stop, Value, hash,
+    Stop, Value, hash, reduce,
 };
 
 mod adaptation;
@@ -232,6 +232,68 @@ impl Vegas {
         self.count / u64::from(self.iterations)
     }
 
+    /// Goes on until about so many `evaluations` were made.
+    fn go_on<I: Integrand>(
+        &self,
+        state: &mut VegasState<Wide<I>>,
+        integrand: &I,
+        evaluations: u64,
+    ) -> Result<(), Error> {
+        let VegasState {
+            adaptation,
+            looked,
+            rejected,
+            iterations,
+            open,
+        } = state;
+        if adaptation.map.dimensions() != self.map.dimensions() {
+            let domain = "one of this estimator, with as many dimensions";
+            let value = adaptation.map.dimensions();
+            return Err(Error::refused("state", domain, value));
+        }
+        let policy = self.non_finite;
+        if *looked == 0 && evaluations > 0 {
+            let seed = hash::hash(self.seed, u64::MAX);
+            [*looked, *rejected] = adaptation.look(integrand, seed, self.each(), policy)?;
+        }
+        let mut whole = *looked + iterations.iter().map(|one| one.used).sum::<u64>();
+        while iterations.len() < self.iterations as usize {
+            // The first points of all come with those that looked, so that there is always an estimate.
+            let least = u64::from(iterations.is_empty() && evaluations > 0);
+            let count = evaluations.saturating_sub(whole).max(least);
+            if count == 0 {
+                break;
+            }
+            let seed = hash::hash(self.seed, iterations.len() as u64);
+            let pass = open.get_or_insert_with(|| adaptation.begin());
+            if !adaptation.go_on(pass, integrand, seed, count, policy)? {
+                break;
+            }
+            let points = adaptation.points();
+            let Some(alone) = Stratified::new(&pass.visited) else {
+                let rejected = pass.visited.rejected();
+                return Err(Error::NothingLeft { rejected });
+            };
+            whole += points;
+            iterations.push(Iteration {
+                mean: alone.mean,
+                std_error: alone.std_error,
+                freedom: alone.freedom,
+                share: alone.share,
+                stratum_share: alone.stratum_share,
+                used: points,
+                rejected: pass.visited.rejected(),
+                training: iterations.len() < self.training(),
+            });
+            // The first half of the iterations finds the place, a half of the way each; the others average what they
+            // learn.
+            let settled = iterations.len().saturating_sub(self.training()) + 2;
+            adaptation.learn(pass, alone.size, self.damping / settled as f64, self.each());
+            *open = None;
+        }
+        Ok(())
+    }
+
     /// The estimate from the iterations that did not only train, and their chi-square.
     fn estimate_of<V: Value>(&self, state: &VegasState<V>) -> Option<(Estimate<V>, Option<f64>)> {
         let trained = state.iterations.partition_point(|one| one.training);
@@ -322,59 +384,9 @@ impl Progressive for Vegas {
         integrand: &I,
         evaluations: u64,
     ) -> Result<(), Error> {
-        let VegasState {
-            adaptation,
-            looked,
-            rejected,
-            iterations,
-            open,
-        } = state;
-        if adaptation.map.dimensions() != self.map.dimensions() {
-            let domain = "one of this estimator, with as many dimensions";
-            let value = adaptation.map.dimensions();
-            return Err(Error::refused("state", domain, value));
-        }
-        let policy = self.non_finite;
-        if *looked == 0 && evaluations > 0 {
-            let seed = hash::hash(self.seed, u64::MAX);
-            [*looked, *rejected] = adaptation.look(integrand, seed, self.each(), policy)?;
-        }
-        let mut whole = *looked + iterations.iter().map(|one| one.used).sum::<u64>();
-        while iterations.len() < self.iterations as usize {
-            // The first points of all come with those that looked, so that there is always an estimate.
-            let least = u64::from(iterations.is_empty() && evaluations > 0);
-            let count = evaluations.saturating_sub(whole).max(least);
-            if count == 0 {
-                break;
-            }
-            let seed = hash::hash(self.seed, iterations.len() as u64);
-            let pass = open.get_or_insert_with(|| adaptation.begin());
-            if !adaptation.go_on(pass, integrand, seed, count, policy)? {
-                break;
-            }
-            let points = pass.used();
-            let Some(alone) = Stratified::new(&pass.visited) else {
-                let rejected = pass.visited.rejected();
-                return Err(Error::NothingLeft { rejected });
-            };
-            whole += points;
-            iterations.push(Iteration {
-                mean: alone.mean,
-                std_error: alone.std_error,
-                freedom: alone.freedom,
-                share: alone.share,
-                stratum_share: alone.stratum_share,
-                used: points,
-                rejected: pass.visited.rejected(),
-                training: iterations.len() < self.training(),
-            });
-            // The first half of the iterations finds the place, a half of the way each; the others average what they
-            // learn.
-            let settled = iterations.len().saturating_sub(self.training()) + 2;
-            adaptation.learn(pass, self.damping / settled as f64, self.each());
-            *open = None;
-        }
-        Ok(())
+        let mut outcome = Ok(());
+        reduce::inside(&mut || outcome = self.go_on(state, integrand, evaluations));
+        outcome
     }
 
     fn conclude<V: Value>(&self, state: &VegasState<V>) -> Option<Estimate<V>> {

@@ -1,7 +1,7 @@
 //! A map that sends points where the integrand is large, axis by axis.
 
 use crate::block::smaller;
-use crate::{Error, Integrand, Sampler, Value};
+use crate::{Error, Integrand, Sampler, Value, reduce};
 
 /// A map of the unit cube onto itself that sends more points where an integrand is large: VEGAS' importance map.[^lepage]
 ///
@@ -102,46 +102,53 @@ impl ImportanceMap {
         self.axes.iter().flat_map(bins).collect()
     }
 
-    /// Moves the ends of the bins so that each holds the same part of `weights`, the mean square of the integrand in each bin,
+    /// The map with ends of bins moved so that each holds the same part of `weights`, the mean square of the integrand in each bin,
     /// as far as `damping` lets it: shares follow the weights to this power, all the way at 1/2, and not at all at 0. Weights
     /// that are all zero or not finite change nothing.
     ///
     /// In the long run no bin is more than twice as wide as its neighbours.
-    pub(crate) fn refine(&mut self, weights: &[Vec<f64>], damping: f64) {
-        for (axis, weights) in self.axes.iter_mut().zip(weights) {
-            let sum: f64 = weights.iter().sum();
-            if weights.len() < 2 || !(sum > 0.0 && sum.is_finite()) {
-                continue;
-            }
-            let last = weights.len() - 1;
-            let smooth: Vec<f64> = (0..=last)
-                .map(|bin| {
-                    let left = weights[bin.saturating_sub(1)];
-                    let right = weights[(bin + 1).min(last)];
-                    (left + 6.0 * weights[bin] + right) / (8.0 * sum)
-                })
-                .collect();
-            let mut damped: Vec<f64> = smooth.iter().map(|share| share.powf(damping)).collect();
-            grade(&mut damped, axis);
-            let total: f64 = damped.iter().sum();
-            let share = total / damped.len() as f64;
-            let old = axis.clone();
-            let (mut bin, mut before) = (0, 0.0);
-            for (place, end) in axis.iter_mut().enumerate().take(last + 1).skip(1) {
-                let target = share * place as f64;
-                while bin < last && before + damped[bin] < target {
-                    before += damped[bin];
-                    bin += 1;
-                }
-                let within = if damped[bin] > 0.0 {
-                    ((target - before) / damped[bin]).clamp(0.0, 1.0)
-                } else {
-                    1.0
-                };
-                *end = old[bin] + within * (old[bin + 1] - old[bin]);
-            }
+    pub(crate) fn refined(&self, weights: &[Vec<f64>], damping: f64) -> Self {
+        let refined = |place: usize, axis: &Vec<f64>| refined(axis, &weights[place], damping);
+        Self {
+            axes: reduce::at_each(&self.axes, refined),
         }
     }
+}
+
+/// The ends of the bins of one axis, moved as their `weights` want them.
+fn refined(axis: &[f64], weights: &[f64], damping: f64) -> Vec<f64> {
+    let mut ends = axis.to_vec();
+    let sum: f64 = weights.iter().sum();
+    if weights.len() < 2 || !(sum > 0.0 && sum.is_finite()) {
+        return ends;
+    }
+    let last = weights.len() - 1;
+    let smooth: Vec<f64> = (0..=last)
+        .map(|bin| {
+            let left = weights[bin.saturating_sub(1)];
+            let right = weights[(bin + 1).min(last)];
+            (left + 6.0 * weights[bin] + right) / (8.0 * sum)
+        })
+        .collect();
+    let mut damped: Vec<f64> = smooth.iter().map(|share| share.powf(damping)).collect();
+    grade(&mut damped, axis);
+    let total: f64 = damped.iter().sum();
+    let share = total / damped.len() as f64;
+    let (mut bin, mut before) = (0, 0.0);
+    for (place, end) in ends.iter_mut().enumerate().take(last + 1).skip(1) {
+        let target = share * place as f64;
+        while bin < last && before + damped[bin] < target {
+            before += damped[bin];
+            bin += 1;
+        }
+        let within = if damped[bin] > 0.0 {
+            ((target - before) / damped[bin]).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
+        *end = axis[bin] + within * (axis[bin + 1] - axis[bin]);
+    }
+    ends
 }
 
 /// Raises the `shares` of the bins of `axis` so far that, as they are repeated, no bin stays more than twice as wide as its
@@ -251,7 +258,7 @@ mod tests {
                 .windows(2)
                 .map(|ends| ((ends[0] + ends[1]) * (ends[1] - ends[0])).powi(2))
                 .collect();
-            map.refine(&[weights], 0.7);
+            map = map.refined(&[weights], 0.7);
         }
         for (place, end) in map.axis(0).unwrap().iter().enumerate() {
             let expected = (place as f64 / 64.0).sqrt();
@@ -270,7 +277,7 @@ mod tests {
                 .windows(2)
                 .map(|ends| (0.3 - ends[0]).clamp(0.0, ends[1] - ends[0]) * (ends[1] - ends[0]))
                 .collect();
-            map.refine(&[weights], 0.5);
+            map = map.refined(&[weights], 0.5);
         }
         let axis = map.axis(0).unwrap();
         let widths: Vec<f64> = axis.windows(2).map(|ends| ends[1] - ends[0]).collect();
@@ -287,11 +294,11 @@ mod tests {
         let identity = ImportanceMap::identity(2, 8).unwrap();
         for weights in [0.0, f64::NAN, f64::INFINITY] {
             let mut map = identity.clone();
-            map.refine(&vec![vec![weights; 8]; 2], 0.5);
+            map = map.refined(&vec![vec![weights; 8]; 2], 0.5);
             assert_eq!(map, identity);
         }
         let mut single = ImportanceMap::identity(2, 1).unwrap();
-        single.refine(&vec![vec![3.0]; 2], 0.5);
+        single = single.refined(&vec![vec![3.0]; 2], 0.5);
         assert_eq!(single, ImportanceMap::identity(2, 1).unwrap());
     }
 
@@ -302,7 +309,7 @@ mod tests {
             for _ in 0..200 {
                 let mut weights = vec![0.0; 8];
                 weights[hot] = 1e300;
-                map.refine(&[weights], 1.5);
+                map = map.refined(&[weights], 1.5);
                 let axis = map.axis(0).unwrap();
                 assert!(axis.windows(2).all(|ends| ends[0] <= ends[1]), "{axis:?}");
                 assert_eq!((axis[0], axis[8]), (0.0, 1.0));

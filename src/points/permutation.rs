@@ -3,6 +3,7 @@
 use super::block::vectorised;
 use super::finite::CHUNK;
 use crate::hash::{Bijection, FEW, ROUNDS, TABLE, shuffled};
+use crate::reduce;
 
 /// The random permutation of `0..count` that [`permute`](crate::hash::permute) makes of a key, for a count up to 2^32.
 pub(super) struct Permutation {
@@ -55,26 +56,28 @@ impl Permutation {
 /// For a count above 2^32.
 #[expect(clippy::cast_possible_truncation, reason = "below 2^32")]
 pub(crate) fn permuted(count: u64, key: u64) -> Vec<u32> {
+    /// Numbers that are permuted side by side with others.
+    const BLOCK: u64 = 1024;
     assert!(count <= 1 << 32, "permuted: the count is 2^32 at most");
-    let mut images = Vec::with_capacity(count as usize);
-    if count == 0 {
-        return images;
-    }
-    let last = (count - 1) as u32;
-    vectorised(
-        #[inline(always)]
-        || {
-            let permutation = Permutation::new(count, key);
-            for first in (0..count).step_by(CHUNK) {
-                let number = |lane: usize| (first + lane as u64).min(last.into()) as u32;
-                let mut chunk = core::array::from_fn(number);
-                permutation.apply(&mut chunk);
-                let here = (count - first).min(CHUNK as u64) as usize;
-                images.extend_from_slice(&chunk[..here]);
-            }
-        },
-    );
-    images
+    let blocks = reduce::each(count.div_ceil(BLOCK), |block| {
+        let numbers = BLOCK * block..count.min(BLOCK * (block + 1));
+        let mut images = Vec::with_capacity(BLOCK as usize);
+        vectorised(
+            #[inline(always)]
+            || {
+                let permutation = Permutation::new(count, key);
+                for first in numbers.clone().step_by(CHUNK) {
+                    let number = |lane: usize| (first + lane as u64).min(count - 1) as u32;
+                    let mut chunk = core::array::from_fn(number);
+                    permutation.apply(&mut chunk);
+                    let here = (numbers.end - first).min(CHUNK as u64) as usize;
+                    images.extend_from_slice(&chunk[..here]);
+                }
+            },
+        );
+        images
+    });
+    blocks.concat()
 }
 
 /// Takes the numbers past the count on along their cycles, until all are below it.

@@ -1,8 +1,9 @@
 //! What strata of equal weight say together: mean, error, and how far the error can be trusted.
 
+use super::parts::Parts;
 use super::{Stratum, Visited};
 use crate::warning::Warning;
-use crate::{ErrorBar, Estimate, Moments, Value};
+use crate::{ErrorBar, Estimate, Moments, Value, reduce};
 
 /// What strata of equal weight say together.
 #[derive(Clone, Copy, Debug)]
@@ -68,11 +69,7 @@ impl<V: Value> Stratified<V> {
     }
 
     fn of(strata: &[Stratum<V>]) -> Option<Self> {
-        if strata.iter().all(|stratum| stratum.moments.count() > 1) {
-            Self::of_all(strata)
-        } else {
-            Self::of_some(strata)
-        }
+        Self::of_all(strata).or_else(|| Self::of_some(strata))
     }
 
     /// From a random sample of the strata: their means are independent values of one distribution.
@@ -107,49 +104,24 @@ impl<V: Value> Stratified<V> {
             return None;
         }
         let weight = 1.0 / strata.len() as f64;
-        let errors: Vec<V> = strata
-            .iter()
-            .map(|stratum| Some(stratum.moments.std_error()?.map(|error| error * weight)))
-            .collect::<Option<_>>()?;
-        let mean = strata.iter().fold(V::ZERO, |sum, stratum| {
-            sum.zip(stratum.moments.mean(), |sum, mean| sum + weight * mean)
-        });
-        let largest = errors
-            .iter()
-            .fold(V::ZERO, |largest, error| largest.zip(*error, f64::max));
-        let (mut squares, mut fourths, mut peak) = (V::ZERO, V::ZERO, V::ZERO);
-        let (mut concentration, mut alike) = (V::ZERO, V::ZERO);
-        for (stratum, &error) in strata.iter().zip(&errors) {
-            let moments = stratum.moments;
-            let less = moments.count() as f64 - 1.0;
-            // Squares relative to the largest: no overflow and no underflow.
-            let part = error.zip(largest, |error, largest| match largest {
-                0.0 => 0.0,
-                largest => (error / largest).powi(2),
-            });
-            squares = squares.zip(part, |sum, part| sum + part);
-            fourths = fourths.zip(part, |sum, part| sum + part * part / less);
-            concentration = concentration.zip(part, |sum, part| sum + part * part);
-            alike = alike.zip(part, |sum, part| sum + f64::from(u8::from(part == 0.0)));
-            let share = stratum
-                .high
-                .zip(moments.mean(), |high, mean| high - mean)
-                .zip(
-                    moments.mean().zip(stratum.low, |mean, low| mean - low),
-                    f64::max,
-                )
-                .zip(moments.root(), |deviation, root| match root {
-                    0.0 => 0.0,
-                    root => (deviation / root).powi(2),
-                });
-            peak = peak.zip(part.zip(share, |part, share| part * share), f64::max);
-        }
+        let parts = reduce::in_blocks(strata, |_, block| Parts::of(block, weight));
+        let parts: Vec<Parts<V>> = parts.into_iter().collect::<Option<_>>()?;
+        let Parts {
+            mean,
+            size,
+            largest,
+            squares,
+            fourths,
+            by_freedom,
+            peak,
+            alike,
+        } = parts.into_iter().fold(Parts::NONE, Parts::and);
         let std_error = squares.zip(largest, |squares, largest| largest * squares.sqrt());
         // No more than can be told from infinitely many.
         let (mut freedom, mut share) = (1e9_f64, 0.0_f64);
-        let _ = squares.zip(fourths, |squares, fourths| {
-            if fourths > 0.0 {
-                freedom = freedom.min(squares * squares / fourths);
+        let _ = squares.zip(by_freedom, |squares, by_freedom| {
+            if by_freedom > 0.0 {
+                freedom = freedom.min(squares * squares / by_freedom);
             }
             0.0
         });
@@ -160,7 +132,7 @@ impl<V: Value> Stratified<V> {
             0.0
         });
         let mut stratum_share = 0.0_f64;
-        let shares = concentration.zip(squares, |fourths, squares| fourths / (squares * squares));
+        let shares = fourths.zip(squares, |fourths, squares| fourths / (squares * squares));
         let _ = shares.zip(alike, |share, alike| {
             if alike * weight > 0.5 {
                 // NaN, where no stratum has a variance, is no larger.
@@ -174,7 +146,7 @@ impl<V: Value> Stratified<V> {
             freedom,
             share,
             stratum_share,
-            size: size(strata),
+            size,
             visited: strata.len() as u64,
             strata: strata.len() as u64,
         })

@@ -7,8 +7,8 @@ use crate::evaluate::Wide;
 use crate::integrands::ImportanceMap;
 use crate::points::{Independent, PointSet};
 use crate::recorder::Recorder;
-use crate::stratum::{Rows, Visited, Walk, apportion};
-use crate::{Error, Integrand, NonFinite, Value, hash};
+use crate::stratum::{Rows, Stratum, Visited, Walk, apportion};
+use crate::{Error, Integrand, NonFinite, Value, hash, reduce};
 
 /// What is adapted from iteration to iteration.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +48,11 @@ impl<V: Value> Adaptation<V> {
             strata,
             scale: V::ZERO,
         }
+    }
+
+    /// How many points the next iteration has.
+    pub(super) fn points(&self) -> u64 {
+        self.counts.iter().sum()
     }
 
     /// An iteration with no points yet.
@@ -108,9 +113,9 @@ impl<V: Value> Adaptation<V> {
         /// Coordinates computed ahead, and of how many points at most.
         const AHEAD: usize = 4096;
         const ROWS: usize = 256;
-        let points: u64 = self.counts.iter().sum();
         // Each part has its own sums for every bin: the more bins, the longer it is to be.
-        let walk = Walk::new(&self.counts, seed, (points / 64).clamp(4096, 16_384));
+        let longest = (self.points() / 64).clamp(4096, 16_384);
+        let walk = Walk::new(&self.counts, seed, longest);
         let bins = self.map.table();
         let dimensions = self.map.dimensions();
         let rows = Rows {
@@ -136,40 +141,33 @@ impl<V: Value> Adaptation<V> {
         Ok(walk.is_complete(visited))
     }
 
-    /// Adapts the map to where the squares are, and the numbers of points to where the spread is.
-    pub(super) fn learn(&mut self, pass: &Pass<V>, damping: f64, count: u64) {
+    /// Adapts the map to where the squares are, and the numbers of points to where the spread is; the `largest` absolute values
+    /// are the scale.
+    pub(super) fn learn(&mut self, pass: &Pass<V>, largest: V, damping: f64, count: u64) {
+        /// This part is spread evenly: a stratum that looked constant may not be.
         const EVEN: f64 = 0.2;
+        let score = |stratum: &Stratum<V>| {
+            let deviation = stratum.moments.std_dev().unwrap_or(V::ZERO);
+            let mut square = 0.0;
+            let _ = deviation.zip(largest, |deviation, largest| {
+                if largest > 0.0 {
+                    square += (deviation / largest).powi(2);
+                }
+                deviation
+            });
+            // The deviation to the power of 3/4: less than 1, because it is uncertain.
+            let root = f64::sqrt(square).sqrt();
+            root * root.sqrt()
+        };
         let bins = self.map.bins();
-        let weights: Vec<_> = pass.squares.chunks_exact(bins).map(means).collect();
-        self.map.refine(&weights, damping);
-        let strata = pass.visited.strata();
-        let largest = strata.iter().fold(V::ZERO, |largest, stratum| {
-            largest.zip(stratum.size(), f64::max)
-        });
+        (self.map, self.counts) = reduce::both(
+            || {
+                let weights: Vec<_> = pass.squares.chunks_exact(bins).map(means).collect();
+                self.map.refined(&weights, damping)
+            },
+            || apportion(pass.visited.strata(), score, EVEN, count),
+        );
         self.scale = largest;
-        let scores: Vec<f64> = strata
-            .iter()
-            .map(|stratum| {
-                let deviation = stratum.moments.std_dev().unwrap_or(V::ZERO);
-                let mut square = 0.0;
-                let _ = deviation.zip(largest, |deviation, largest| {
-                    if largest > 0.0 {
-                        square += (deviation / largest).powi(2);
-                    }
-                    deviation
-                });
-                // The deviation to the power of 3/4: less than 1, because it is uncertain.
-                let root = f64::sqrt(square).sqrt();
-                root * root.sqrt()
-            })
-            .collect();
-        // A part is spread evenly: a stratum that looked constant may not be.
-        let even = scores.iter().sum::<f64>() / scores.len() as f64;
-        let scores: Vec<f64> = scores
-            .iter()
-            .map(|score| EVEN * even + (1.0 - EVEN) * score)
-            .collect();
-        self.counts = apportion(&scores, count);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The strata of VEGAS.
 
-use crate::stratum::apportion;
+use crate::stratum;
 
 /// The strata: a grid of cells, equal along each axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,7 @@ impl Grid {
     }
 
     pub(super) fn evenly(&self, count: u64) -> Vec<u64> {
-        apportion(&vec![1.0; self.strata], count)
+        stratum::evenly(self.strata, count)
     }
 
     /// The axes under a map of `bins` bins, at the first stratum.

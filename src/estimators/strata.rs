@@ -162,7 +162,7 @@ impl Strata {
                 break;
             }
             let seed = hash::hash(seed, u64::from(phase.rounds));
-            let walk = Walk::new(&rounds.counts(phase.rounds), seed, LONGEST);
+            let walk = Walk::shuffled(&rounds.counts(phase.rounds), seed, LONGEST);
             let rows = Rows {
                 points: Independent::new(seed),
                 width,

@@ -18,7 +18,7 @@ mod iterations;
 mod learner;
 mod squares;
 
-use adaptation::{Adaptation, Pass};
+use adaptation::{Adaptation, Order, Pass};
 use iterations::Together;
 
 pub use iterations::Iteration;
@@ -266,7 +266,13 @@ impl Vegas {
             }
             let seed = hash::hash(self.seed, iterations.len() as u64);
             let pass = open.get_or_insert_with(|| adaptation.begin());
-            if !adaptation.go_on(pass, integrand, seed, count, policy)? {
+            // Only the first is part of an estimate before it is complete.
+            let order = if iterations.is_empty() {
+                Order::Random
+            } else {
+                Order::Number
+            };
+            if !adaptation.go_on(pass, integrand, seed, count, order, policy)? {
                 break;
             }
             let points = adaptation.points();

@@ -8,9 +8,6 @@ use crate::room::with_room;
 use crate::{Cursor, Error, NonFinite, Value, reduce};
 
 /// So many points in each stratum, one stratum after the other, in parts that can be evaluated side by side.
-///
-/// The order of the strata is random. So those that were visited first are a random sample of all, and
-/// a walk that has to stop early has an estimate to give.
 pub(crate) struct Walk {
     /// Which strata are visited, in their order.
     order: Vec<u32>,
@@ -25,9 +22,20 @@ pub(crate) struct Walk {
 const SHORTEST: u64 = 256;
 
 impl Walk {
-    /// `counts[k]` points in stratum `k`, in an order that `key` selects; no part is longer than about `longest`.
-    pub(crate) fn new(counts: &[u64], key: u64, longest: u64) -> Self {
-        let order = permuted(counts.len() as u64, key);
+    /// `counts[k]` points in stratum `k`; no part is longer than about `longest`.
+    ///
+    /// The order of the strata is random, one that `key` selects. So those that were visited first are a random sample of all,
+    /// and a walk that has to stop early has an estimate to give.
+    pub(crate) fn shuffled(counts: &[u64], key: u64, longest: u64) -> Self {
+        Self::new(counts, permuted(counts.len() as u64, key), longest)
+    }
+
+    /// The same with strata in the order of their numbers: less to do where nothing is said before the walk is complete.
+    pub(crate) fn in_turn(counts: &[u64], longest: u64) -> Self {
+        Self::new(counts, (0..).take(counts.len()).collect(), longest)
+    }
+
+    fn new(counts: &[u64], order: Vec<u32>, longest: u64) -> Self {
         let mut end = 0;
         let ends = order.iter().map(|&stratum| {
             end += counts[stratum as usize];
@@ -346,7 +354,7 @@ mod tests {
     #[test]
     fn parts_follow_one_another_and_end_where_they_are_asked_to() {
         for longest in [256, 1024, 16_384] {
-            let walk = Walk::new(&[70_000, 2, 3], 7, longest);
+            let walk = Walk::shuffled(&[70_000, 2, 3], 7, longest);
             let parts = walk.parts(u64::MAX);
             assert_eq!((walk.first_of(0), walk.first_of(parts)), (0, 70_005));
             for part in 0..parts {
@@ -356,13 +364,13 @@ mod tests {
                 assert_eq!(walk.parts(first + 1), part + 1);
             }
         }
-        assert_eq!(Walk::new(&[], 0, 1).parts(u64::MAX), 0);
+        assert_eq!(Walk::shuffled(&[], 0, 1).parts(u64::MAX), 0);
     }
 
     #[test]
     fn every_stratum_is_visited_once_with_its_points() {
         let counts: Vec<u64> = (2..40).collect();
-        let walk = Walk::new(&counts, 3, 256);
+        let walk = Walk::shuffled(&counts, 3, 256);
         let mut seen = walk.order.clone();
         for (visit, &stratum) in seen.iter().enumerate() {
             let before = visit.checked_sub(1).map_or(0, |visit| walk.ends[visit]);

@@ -21,6 +21,15 @@ pub(super) struct Adaptation<V> {
     pub(super) scale: V,
 }
 
+/// How an iteration goes through the strata.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Order {
+    /// Those that were visited first are a random sample of all.
+    Random,
+    /// By their numbers, which takes less time.
+    Number,
+}
+
 /// What one iteration has given so far.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -105,6 +114,7 @@ impl<V: Value> Adaptation<V> {
         integrand: &I,
         seed: u64,
         count: u64,
+        order: Order,
         policy: NonFinite,
     ) -> Result<bool, Error>
     where
@@ -115,7 +125,10 @@ impl<V: Value> Adaptation<V> {
         const ROWS: usize = 256;
         // Each part has its own sums for every bin: the more bins, the longer it is to be.
         let longest = (self.points() / 64).clamp(4096, 16_384);
-        let walk = Walk::new(&self.counts, seed, longest);
+        let walk = match order {
+            Order::Random => Walk::shuffled(&self.counts, seed, longest),
+            Order::Number => Walk::in_turn(&self.counts, longest),
+        };
         let bins = self.map.table();
         let dimensions = self.map.dimensions();
         let rows = Rows {

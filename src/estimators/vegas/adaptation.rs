@@ -124,7 +124,7 @@ impl<V: Value> Adaptation<V> {
         const AHEAD: usize = 4096;
         const ROWS: usize = 256;
         // Each part has its own sums for every bin: the more bins, the longer it is to be.
-        let longest = (self.points() / 64).clamp(4096, 16_384);
+        let longest = (self.points() / 32).clamp(4096, 16_384);
         let walk = match order {
             Order::Random => Walk::shuffled(&self.counts, seed, longest),
             Order::Number => Walk::in_turn(&self.counts, longest),

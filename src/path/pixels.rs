@@ -224,14 +224,14 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         for run in runs {
             let pixel = self.pixel(run.share.position, size);
             for (slot, index) in (run.slot..).zip(run.indices.clone()) {
-                pixel.trace(
-                    &mut run.share.points.point(index),
-                    &mut Tracer {
-                        traces,
-                        roulette: &self.paths.roulette,
-                        slot,
-                    },
-                );
+                let mut tracer = Tracer {
+                    traces,
+                    roulette: &self.paths.roulette,
+                    slot,
+                };
+                let u = &mut run.share.points.point(index);
+                let (radiance, weight) = pixel.follow(u, &mut tracer);
+                tracer.end(radiance, weight);
             }
         }
         for group in groups {

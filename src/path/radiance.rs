@@ -5,7 +5,7 @@ use glam::{Vec3, Vec3A};
 use super::Ray;
 use super::bsdf::Bsdf;
 use super::light::{Environment, Light};
-use super::reuse::{MOST, SPREAD};
+use super::reuse::{Diffuse, MOST, SPREAD};
 use super::roulette::{Rule, Witness};
 use super::scene::Scene;
 use crate::{Error, Sampler};
@@ -137,7 +137,7 @@ impl Paths {
         scene: &Scene<B, L, E>,
         mut ray: Ray,
         u: &mut S,
-        witness: &mut impl Witness,
+        witness: &mut (impl Witness + ?Sized),
     ) -> Vec3 {
         let mut radiance = Vec3A::ZERO;
         if self.hides_lights {
@@ -167,7 +167,8 @@ impl Paths {
             }
             let (surface, bsdf) = (&vertex.surface, vertex.bsdf);
             let out = -ray.direction;
-            witness.scatters(segment, &vertex, out, &mut throughput, &mut radiance);
+            let diffuse = || Diffuse::of(&vertex, out);
+            witness.scatters(segment, &diffuse, &mut throughput, &mut radiance);
             // Next-event estimation: light met by drawing a point of the lights, and one of what is around.
             if !bsdf.is_delta() {
                 let area = scene.lights().sample(surface, u);

@@ -17,8 +17,7 @@ use super::light::{Emission, Illumination, Sky};
 use super::light::{Environment, Light};
 #[cfg(feature = "simd")]
 use super::packet::{Packet, Single};
-use super::reuse::Tracer;
-use super::roulette::Steps;
+use super::roulette::Witness;
 use super::sensor::Sensor;
 use super::{Paths, Ray, Scene, Share};
 use crate::points::{PointSet, pixel};
@@ -60,18 +59,12 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Pixel<'_, B, L, E,
         }
     }
 
-    /// Follows a path of which something is kept.
-    pub(in crate::path) fn trace<S: Sampler>(&self, u: &mut S, tracer: &mut Tracer<'_>) {
-        let Start { ray, weight } = self.start(u);
-        let radiance = self.paths.witnessed(self.scene, ray, u, tracer);
-        tracer.end(radiance, weight);
-    }
-
     /// The radiance of a path that somebody looks at, and what it counts.
     #[inline(never)]
-    pub(crate) fn follow(&self, mut u: &mut dyn Sampler, steps: &mut Steps) -> (Vec3, f32) {
+    pub(crate) fn follow(&self, mut u: &mut dyn Sampler, witness: &mut dyn Witness) -> (Vec3, f32) {
         let Start { ray, weight } = self.start(&mut u);
-        (self.paths.witnessed(self.scene, ray, &mut u, steps), weight)
+        let radiance = self.paths.witnessed(self.scene, ray, &mut u, witness);
+        (radiance, weight)
     }
 }
 

@@ -44,9 +44,7 @@ pub(in crate::path) struct Traces {
 #[repr(align(64))]
 pub(in crate::path) struct Slots {
     pub(in crate::path) first: Points,
-    /// Of the first point.
-    pub(in crate::path) albedo: Vectors,
-    /// The probability with which the roulette lets a path go on from there.
+    /// The probability with which the roulette lets a path go on from its first point.
     pub(in crate::path) survival: Numbers,
     pub(in crate::path) second: Points,
     /// The radiance of the pixel that is its own; in the end all of it.
@@ -67,13 +65,29 @@ pub(in crate::path) struct Points {
     pub(in crate::path) margin: Numbers,
     /// The normal that light is scattered by, on the side that the path came from.
     pub(in crate::path) shading: Vectors,
+    pub(in crate::path) albedo: Vectors,
 }
 
 /// A point that scatters light ideally diffusely.
 #[derive(Clone, Copy)]
-pub(in crate::path) struct Diffuse {
+pub(crate) struct Diffuse {
     pub(in crate::path) surface: Surface,
     pub(in crate::path) shading: Vec3A,
+    pub(in crate::path) albedo: Vec3A,
+}
+
+impl Diffuse {
+    /// That of a path which came from `out`, if it is one.
+    pub(in crate::path) fn of<B: Bsdf>(vertex: &Vertex<'_, B>, out: Vec3A) -> Option<Self> {
+        let law = vertex.bsdf.lambertian_at(&vertex.surface)?;
+        let normal = vertex.surface.detail.normal(vertex.surface.normal);
+        let facing = normal.dot(out);
+        law.is_seen(facing).then(|| Self {
+            surface: *vertex.place(),
+            shading: normal * 1.0_f32.copysign(facing),
+            albedo: law.albedo,
+        })
+    }
 }
 
 const NUMBERS: Numbers = [0.0; WIDTH];
@@ -86,6 +100,7 @@ impl Points {
         normal: VECTORS,
         margin: NUMBERS,
         shading: VECTORS,
+        albedo: VECTORS,
     };
 
     #[inline]
@@ -94,12 +109,18 @@ impl Points {
     }
 
     #[inline]
-    fn set(&mut self, slot: usize, Diffuse { surface, shading }: Diffuse) {
+    fn set(&mut self, slot: usize, diffuse: &Diffuse) {
+        let Diffuse {
+            surface,
+            shading,
+            albedo,
+        } = diffuse;
         self.known[slot % WIDTH] = 1.0;
         set_vector(&mut self.point, slot, surface.point);
         set_vector(&mut self.normal, slot, surface.normal);
         self.margin[slot % WIDTH] = surface.margin;
-        set_vector(&mut self.shading, slot, shading);
+        set_vector(&mut self.shading, slot, *shading);
+        set_vector(&mut self.albedo, slot, *albedo);
     }
 
     fn get(&self, slot: usize) -> Option<Diffuse> {
@@ -112,6 +133,7 @@ impl Points {
         self.is_known(slot).then(|| Diffuse {
             surface,
             shading: vector(&self.shading, slot),
+            albedo: vector(&self.albedo, slot),
         })
     }
 }
@@ -131,7 +153,6 @@ fn vector([x, y, z]: &Vectors, slot: usize) -> Vec3A {
 impl Slots {
     const EMPTY: Self = Self {
         first: Points::NONE,
-        albedo: VECTORS,
         survival: NUMBERS,
         second: Points::NONE,
         own: VECTORS,
@@ -168,24 +189,17 @@ impl Traces {
 
     /// The first point of a path.
     #[inline]
-    pub(in crate::path) fn set_first(
-        &mut self,
-        slot: usize,
-        point: Diffuse,
-        albedo: Vec3A,
-        roulette: &Rule,
-    ) {
+    pub(in crate::path) fn set_first(&mut self, slot: usize, point: Diffuse, roulette: &Rule) {
         let slots = self.of_mut(slot);
-        slots.first.set(slot, point);
-        slots.survival[slot % WIDTH] = roulette.chance(1, albedo.max_element());
-        set_vector(&mut slots.albedo, slot, albedo);
+        slots.first.set(slot, &point);
+        slots.survival[slot % WIDTH] = roulette.chance(1, point.albedo.max_element());
     }
 
     /// The second point of a path, which has gathered `own`.
     #[inline]
     pub(in crate::path) fn set_second(&mut self, slot: usize, point: Diffuse, own: Vec3A) {
         let slots = self.of_mut(slot);
-        slots.second.set(slot, point);
+        slots.second.set(slot, &point);
         set_vector(&mut slots.own, slot, own);
     }
 
@@ -211,7 +225,7 @@ impl Traces {
     pub(in crate::path) fn share(&mut self, group: &Group, occluded: &dyn Fn(&Segment) -> bool) {
         for round in 0..group.rounds {
             let slot = |pixel| group.slot(pixel, round);
-            let albedo = |of: &Self, pixel| vector(&of.of(slot(pixel)).albedo, slot(pixel));
+            let albedo = |of: &Self, pixel| vector(&of.of(slot(pixel)).first.albedo, slot(pixel));
             let survival = |of: &Self, pixel| of.of(slot(pixel)).survival[slot(pixel) % WIDTH];
             let mut sums = [Vec3A::ZERO; MOST];
             for giver in 0..group.pixels {
@@ -301,31 +315,21 @@ impl Tracer<'_> {
 }
 
 impl Witness for Tracer<'_> {
-    fn scatters<B: Bsdf>(
+    fn scatters(
         &mut self,
         segment: u32,
-        vertex: &Vertex<'_, B>,
-        out: Vec3A,
+        diffuse: &dyn Fn() -> Option<Diffuse>,
         throughput: &mut Vec3A,
         radiance: &mut Vec3A,
     ) {
         if segment > 2 || segment == 2 && !self.traces.has_first(self.slot) {
             return;
         }
-        let Some(law) = vertex.bsdf.lambertian_at(&vertex.surface) else {
+        let Some(point) = diffuse().filter(|point| point.albedo.max_element() >= DARKEST) else {
             return;
-        };
-        let normal = vertex.surface.detail.normal(vertex.surface.normal);
-        let facing = normal.dot(out);
-        if !law.is_seen(facing) || law.albedo.max_element() < DARKEST {
-            return;
-        }
-        let point = Diffuse {
-            surface: *vertex.place(),
-            shading: normal * 1.0_f32.copysign(facing),
         };
         if segment == 1 {
-            (self.traces).set_first(self.slot, point, law.albedo, self.roulette);
+            self.traces.set_first(self.slot, point, self.roulette);
         } else {
             self.traces.set_second(self.slot, point, *radiance);
             // The colour of the first point is another for each pixel; the path is no less likely to go on than it was.
@@ -349,6 +353,7 @@ mod tests {
                 detail: (),
             },
             shading: normal,
+            albedo: Vec3A::ONE,
         }
     }
 
@@ -368,8 +373,9 @@ mod tests {
         traces.clear(4 * WIDTH);
         for (pixel, x) in [0.0, 1.0, 2.0].into_iter().enumerate() {
             let slot = group.slot(pixel, 5);
-            let point = diffuse([x, 0.0, 0.0], Vec3A::Z);
-            traces.set_first(slot, point, ALBEDOS[pixel].into(), &ALWAYS);
+            let mut point = diffuse([x, 0.0, 0.0], Vec3A::Z);
+            point.albedo = ALBEDOS[pixel].into();
+            traces.set_first(slot, point, &ALWAYS);
             if pixel == 0 {
                 traces.set_second(slot, diffuse([0.0, 0.0, 2.0], -Vec3A::Z), Vec3A::splat(7.0));
                 traces.end(slot, LIGHT * 0.5, 2.0);
@@ -452,10 +458,10 @@ mod tests {
                 let slot = group.slot(pixel, 5);
                 traces.of_mut(slot).first.known[slot % WIDTH] = 0.0;
                 match away {
-                    Some(point) => traces.set_first(slot, point, Vec3A::ONE, &ALWAYS),
+                    Some(point) => traces.set_first(slot, point, &ALWAYS),
                     None => {
                         let point = diffuse([1.0, 0.0, 0.0], Vec3A::Z);
-                        traces.set_first(slot + 1, point, Vec3A::ONE, &ALWAYS);
+                        traces.set_first(slot + 1, point, &ALWAYS);
                     }
                 }
             }
@@ -479,8 +485,9 @@ mod tests {
         traces.clear(2 * WIDTH);
         let albedos = [0.05, 0.7].map(Vec3A::splat);
         for (pixel, albedo) in albedos.into_iter().enumerate() {
-            let point = diffuse([0.0; 3], Vec3A::Z);
-            traces.set_first(group.slot(pixel, 5), point, albedo, &roulette);
+            let mut point = diffuse([0.0; 3], Vec3A::Z);
+            point.albedo = albedo;
+            traces.set_first(group.slot(pixel, 5), point, &roulette);
             traces.end(group.slot(pixel, 5), Vec3A::ZERO, 1.0);
         }
         let slot = group.slot(0, 5);
@@ -509,7 +516,7 @@ mod tests {
             for pixel in 0..2 {
                 let mut point = diffuse([0.0; 3], Vec3A::Z);
                 point.surface.margin = 0.0;
-                traces.set_first(group.slot(pixel, 0), point, Vec3A::ONE, &ALWAYS);
+                traces.set_first(group.slot(pixel, 0), point, &ALWAYS);
                 let mut other = diffuse([0.0, 0.0, size], -Vec3A::Z);
                 other.surface.margin = 0.0;
                 traces.set_second(group.slot(pixel, 0), other, Vec3A::ZERO);

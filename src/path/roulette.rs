@@ -6,7 +6,7 @@ use crate::Sampler;
 use crate::integrands::Survival;
 
 pub(crate) use pilot::Steps;
-pub(in crate::path) use pilot::Witness;
+pub(crate) use pilot::Witness;
 
 /// Segments that a rule tells apart; later ones are as the last.
 const TOLD_APART: usize = 16;

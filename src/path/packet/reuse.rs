@@ -71,11 +71,13 @@ impl Keeper<'_> {
                     margin: margin.0[lane],
                     detail: (),
                 };
-                let shading = Row::vector(&shading, lane);
-                let point = Diffuse { surface, shading };
+                let point = Diffuse {
+                    surface,
+                    shading: Row::vector(&shading, lane),
+                    albedo: Row::vector(&albedo, lane),
+                };
                 if segment == 1.0 {
-                    let albedo = Row::vector(&albedo, lane);
-                    self.traces.set_first(slot, point, albedo, self.roulette);
+                    self.traces.set_first(slot, point, self.roulette);
                 } else if self.traces.has_first(slot) {
                     let own = Row::vector(&radiance, lane);
                     self.traces.set_second(slot, point, own);
@@ -174,7 +176,7 @@ impl Sharing<'_> {
         let slot = |pixel| group.slot(pixel, round);
         let traces = &mut *self.traces;
         let albedo = |traces: &Traces, pixel| {
-            Vector::of_slots(simd, &traces.of(slot(pixel)).albedo, slot(pixel))
+            Vector::of_slots(simd, &traces.of(slot(pixel)).first.albedo, slot(pixel))
         };
         let survival = |traces: &Traces, pixel| {
             Real::of_slots(simd, &traces.of(slot(pixel)).survival, slot(pixel))

@@ -9,20 +9,20 @@ use crate::path::bsdf::Bsdf;
 use crate::path::filter::Filter;
 use crate::path::light::{Environment, Light};
 use crate::path::render::check_size;
+use crate::path::reuse::Diffuse;
 use crate::path::sensor::Sensor;
-use crate::path::{Paths, Vertex, View};
+use crate::path::{Paths, View};
 use crate::points::{Independent, PointSet, pixel};
 use crate::{Error, Moments, Sampler, each};
 
 /// Looks on while a path is followed.
-pub(in crate::path) trait Witness {
-    /// The path is at a point that may scatter light, seen from `out`: what it carries, and what it has gathered.
+pub(crate) trait Witness {
+    /// The path is at a point that may scatter light, `diffuse` if it does so ideally: what it carries, and what it has gathered.
     #[inline(always)]
-    fn scatters<B: Bsdf>(
+    fn scatters(
         &mut self,
         _segment: u32,
-        _vertex: &Vertex<'_, B>,
-        _out: Vec3A,
+        _diffuse: &dyn Fn() -> Option<Diffuse>,
         _throughput: &mut Vec3A,
         _radiance: &mut Vec3A,
     ) {

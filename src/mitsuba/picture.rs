@@ -8,7 +8,6 @@ use glam::DVec3;
 use crate::path::bsdf::Bsdf;
 use crate::path::filter::Filter;
 use crate::path::light::{Environment, Light};
-use crate::path::roulette::Steps;
 use crate::path::sensor::Sensor;
 use crate::path::{Share, View};
 use crate::points::PointSet;
@@ -142,8 +141,7 @@ where
             index,
             drawn: &drawn,
         };
-        self.pixel(position, size)
-            .follow(&mut counting, &mut Steps::default());
+        self.pixel(position, size).follow(&mut counting, &mut ());
         u64::from(drawn.get())
     }
 }

@@ -5,7 +5,6 @@ mod pilot;
 use crate::Sampler;
 use crate::integrands::Survival;
 
-pub(crate) use pilot::Steps;
 pub(crate) use pilot::Witness;
 
 /// Segments that a rule tells apart; later ones are as the last.

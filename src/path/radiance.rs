@@ -77,15 +77,16 @@ impl Paths {
     /// mean over a run of them is larger than those of the pixels say.
     ///
     /// ```
-    /// use estimand::path::scenes;
+    /// use estimand::path::{Image, scenes};
     /// use estimand::points::Rescrambled;
     ///
-    /// let (mut view, size) = (scenes::cornell_box(), [32, 32]);
-    /// let reference = view.render_points(size, 7, 1024, |key| Rescrambled::new(4, key), |_| true)?;
+    /// // The radiance is 1 everywhere.
+    /// let (mut view, size) = (scenes::furnace(), [32, 32]);
+    /// let truth = Image::new(32, vec![[1.0; 3].into(); 32 * 32])?;
     /// let alone = view.render_points(size, 1, 16, |key| Rescrambled::new(4, key), |_| true)?;
     /// view.paths = view.paths.reused_by(8)?;
     /// let together = view.render_points(size, 1, 16, |key| Rescrambled::new(4, key), |_| true)?;
-    /// assert!(together.rmse(&reference)? < 0.8 * alone.rmse(&reference)?);
+    /// assert!(together.rmse(&truth)? < 0.8 * alone.rmse(&truth)?);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///

@@ -297,8 +297,8 @@ fn clamped(density: f32) -> f32 {
 /// The largest density that is told from others.
 pub(in crate::path) const HIGHEST: f32 = 1e36;
 
-/// Whether a first point of this albedo can give light and take it: not where there is nothing to divide by.
-pub(in crate::path) const DARKEST: f32 = f32::MIN_POSITIVE;
+/// The darkest albedo whose points give light and take it: what is given is divided by it, and by what survives of it.
+pub(in crate::path) const DARKEST: f32 = 1e-6;
 
 /// Keeps what is to be kept of one path.
 pub(in crate::path) struct Tracer<'a> {
@@ -498,6 +498,39 @@ mod tests {
         // The densities are alike but for the survival.
         for (pixel, albedo) in albedos.into_iter().enumerate() {
             close(value(&traces, &group, pixel), LIGHT * albedo / 0.75);
+        }
+    }
+
+    #[test]
+    fn what_is_dark_keeps_its_light() {
+        for (albedo, first) in [(0.9 * DARKEST, false), (1.1 * DARKEST, true)] {
+            let mut traces = Traces::default();
+            traces.clear(WIDTH);
+            let roulette = Rule::of_throughput(1);
+            let mut tracer = Tracer {
+                traces: &mut traces,
+                roulette: &roulette,
+                slot: 3,
+            };
+            let mut point = diffuse([0.0; 3], Vec3A::Z);
+            point.albedo = Vec3A::splat(albedo);
+            let (mut throughput, mut radiance) = (Vec3A::ONE, Vec3A::splat(5.0));
+            tracer.scatters(1, &|| Some(point), &mut throughput, &mut radiance);
+            assert_eq!((throughput, radiance), (Vec3A::ONE, Vec3A::splat(5.0)));
+            // The next point is another's light only after one that is kept.
+            let mut next = |segment, at: Option<Diffuse>| {
+                tracer.scatters(segment, &|| at, &mut throughput, &mut radiance);
+            };
+            next(3, Some(diffuse([0.0; 3], Vec3A::Z)));
+            next(2, None);
+            next(2, Some(diffuse([0.0; 3], Vec3A::Z)));
+            let expected = if first {
+                Vec3A::ZERO
+            } else {
+                Vec3A::splat(5.0)
+            };
+            assert_eq!(radiance, expected);
+            assert_eq!(traces.has_first(3), first);
         }
     }
 

@@ -13,6 +13,7 @@ use glam::Vec3;
 #[cfg(feature = "simd")]
 use {
     super::packet::{Keeper, Packet},
+    super::reuse::TOGETHER,
     crate::block::Block,
     crate::estimators::whole,
     crate::evaluate::BLOCK,
@@ -284,11 +285,6 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
             .estimate(&self.pixel(share.position, size))
     }
 }
-
-/// From how many points on those at hand are followed: enough for few lanes to be idle when they run out, few enough for their
-/// coordinates to stay in a cache.
-#[cfg(feature = "simd")]
-const TOGETHER: usize = 512;
 
 #[cfg(feature = "simd")]
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F> {

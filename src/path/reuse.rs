@@ -16,6 +16,8 @@ use super::bsdf::Bsdf;
 use super::roulette::{Rule, Witness};
 use super::{Detail, Segment, Surface, Vertex};
 
+#[cfg(feature = "simd")]
+pub(in crate::path) use means::TOGETHER;
 pub(in crate::path) use means::{Group, Part, Pixels, Run};
 
 /// The most pixels that go together.

@@ -5,7 +5,6 @@ use pulp::{Simd, WithSimd};
 
 use super::Packet;
 use super::here::Here;
-use super::solids::{Rays, passes};
 use super::walk::Laws;
 use crate::path::geometry::Geometry;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
@@ -208,7 +207,14 @@ impl Sharing<'_> {
                     let active = both & found.gt(zero) & facing & length.gt(zero);
                     let into = way * (1.0 / length);
                     let limit = length * (1.0 - gamma(8));
-                    let visible = self.packet.sees(self.geometry, active, start, into, limit);
+                    let visible = if active.any() {
+                        let between = &self.packet.dividing;
+                        let ways = (start, into, limit);
+                        self.packet
+                            .sees::<S, false>(between, || self.geometry, active, ways)
+                    } else {
+                        active
+                    };
                     visible.select(clamped, zero)
                 };
                 sum = sum + *density * survival(traces, taker);
@@ -227,35 +233,5 @@ impl Sharing<'_> {
                 component.store_first(&mut numbers[slot(pixel) % WIDTH..]);
             }
         }
-    }
-}
-
-impl Packet {
-    /// Where nothing is in the way between two points of the scene, in the active lanes.
-    #[inline(always)]
-    fn sees<S: Simd>(
-        &self,
-        geometry: &Geometry,
-        active: Mask<S>,
-        start: Vector<S>,
-        into: Vector<S>,
-        limit: Real<S>,
-    ) -> Mask<S> {
-        if !active.any() {
-            return active;
-        }
-        let mut visible = !self.dividing.occluded(start, into, limit, !active);
-        if self.solids.as_ref().is_some_and(|solids| solids.rest) && visible.any() {
-            let simd = limit.simd();
-            let rays = Rays {
-                origin: &start.rows(),
-                direction: &into.rows(),
-                limit: &limit.row(),
-                active: &visible.row(simd),
-            };
-            let passes = passes(geometry, &rays);
-            visible = Real::load(simd, &passes).gt(Real::splat(simd, 0.0));
-        }
-        visible
     }
 }

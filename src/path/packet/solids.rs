@@ -3,7 +3,9 @@
 use glam::{Vec2, Vec3A};
 use pulp::Simd;
 
+use super::Packet;
 use super::optics::Optics;
+use super::sweep::Shapes;
 use crate::path::Ray;
 use crate::path::geometry::{Geometry, Hit};
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
@@ -223,9 +225,37 @@ impl Solids {
     }
 }
 
+impl Packet {
+    /// Where nothing is in the way, in the active lanes: neither shapes `between` the ends nor, unless the scene is `PLAIN`, anything
+    /// else. The ways are where rays start, where they go and how far.
+    #[inline(always)]
+    pub(super) fn sees<'g, S: Simd, const PLAIN: bool>(
+        &self,
+        between: &Shapes,
+        geometry: impl FnOnce() -> &'g Geometry,
+        active: Mask<S>,
+        (start, into, limit): (Vector<S>, Vector<S>, Real<S>),
+    ) -> Mask<S> {
+        let simd = limit.simd();
+        let visible = !between.occluded(start, into, limit, !active);
+        let solids = self.solids.as_ref().filter(|_| !PLAIN);
+        if !solids.is_some_and(|solids| solids.rest) {
+            return visible;
+        }
+        let rays = Rays {
+            origin: &start.rows(),
+            direction: &into.rows(),
+            limit: &limit.row(),
+            active: &visible.row(simd),
+        };
+        let passes = passes(geometry(), &rays);
+        Real::load(simd, &passes).gt(Real::splat(simd, 0.0))
+    }
+}
+
 /// 1 in the lanes whose rays meet nothing but flat shapes and spheres, 0 in all others.
 #[inline(never)]
-pub(super) fn passes(geometry: &Geometry, rays: &Rays<'_>) -> Row<f32> {
+fn passes(geometry: &Geometry, rays: &Rays<'_>) -> Row<f32> {
     let mut passes = Row::<f32>::ZERO;
     for (lane, ray, limit) in rays.each() {
         if !geometry.occluded_by_rest(&ray, limit) {

@@ -12,7 +12,7 @@ use super::lamp::Lamp;
 use super::math::{around, cosine_hemisphere, power};
 use super::optics::{DELTA, OTHER, VARYING};
 use super::reuse::{AtPoints, Keeper};
-use super::solids::{Rays, passes};
+use super::solids::Rays;
 use super::sweep::Shapes;
 use super::{Packet, Single, Start};
 use crate::Sampler;
@@ -390,18 +390,11 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         if !active.any() {
             return radiance;
         }
-        let mut visible = !between.occluded(lamp.start, lamp.into, lamp.limit, !active);
-        let solids = self.packet.solids.as_ref().filter(|_| !PLAIN);
-        if solids.is_some_and(|solids| solids.rest) {
-            let rays = Rays {
-                origin: &lamp.start.rows(),
-                direction: &lamp.into.rows(),
-                limit: &lamp.limit.row(),
-                active: &visible.row(simd),
-            };
-            let passes = passes(self.single.geometry(), &rays);
-            visible = Real::load(simd, &passes).gt(zero);
-        }
+        let (geometry, ways) = (
+            || self.single.geometry(),
+            (lamp.start, lamp.into, lamp.limit),
+        );
+        let visible = (self.packet).sees::<S, PLAIN>(between, geometry, active, ways);
         let sum = throughput * value * lamp.weight * power(lamp.density, other);
         visible.choose(radiance + sum, radiance)
     }

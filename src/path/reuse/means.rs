@@ -59,8 +59,9 @@ impl Group {
     }
 }
 
-/// From how many paths on those at hand are followed: enough for few lanes to be idle when they run out.
-const TOGETHER: usize = 512;
+/// From how many paths on those at hand are followed: enough for few lanes to be idle when they run out, few enough for their
+/// coordinates to stay in a cache.
+pub(in crate::path) const TOGETHER: usize = 512;
 
 /// A share among those that may go together.
 struct Member<'a, P> {

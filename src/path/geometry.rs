@@ -24,6 +24,8 @@ pub(in crate::path) use copies::Copied;
 use copies::Copies;
 #[cfg(feature = "simd")]
 pub(in crate::path) use kind::{Kind, axis};
+#[cfg(feature = "simd")]
+pub(in crate::path) use probe::WIDER;
 use soup::Soup;
 use sweep::Sweep;
 use tree::Tree;
@@ -131,7 +133,7 @@ impl Geometry {
 
     /// The first triangle of a mesh or shape of a copy that the ray meets before `limit`, and its distance.
     #[inline]
-    fn nearest_beside(&self, ray: &Ray, mut limit: f32) -> Option<(Hit, f32)> {
+    pub(in crate::path) fn nearest_beside(&self, ray: &Ray, mut limit: f32) -> Option<(Hit, f32)> {
         let mut nearest = None;
         if let Some(soup) = &self.soup
             && let Some(struck) = soup.nearest(ray, limit)
@@ -199,31 +201,12 @@ impl Geometry {
         }
     }
 
-    /// Whether there is anything but few flat shapes and spheres: the *rest*.
+    /// The boxes that rays enter, [wider](WIDER) than they are, before they meet a triangle of a mesh or a copy.
     #[cfg(feature = "simd")]
-    pub(in crate::path) fn has_rest(&self) -> bool {
-        let few = self.sweep().is_some_and(|sweep| sweep.round.is_empty());
-        !few || self.soup.is_some() || self.copies.is_some()
-    }
-
-    /// What the ray meets first of the rest, before `limit`.
-    #[cfg(feature = "simd")]
-    #[inline]
-    pub(in crate::path) fn nearest_of_rest(&self, ray: &Ray, limit: f32) -> Option<Hit> {
-        let other = self
-            .sweep()
-            .and_then(|sweep| sweep.nearest_round(ray, limit));
-        let limit = other.map_or(limit, |found| found.distance);
-        let hit = self.nearest_beside(ray, limit).map(|(hit, _)| hit);
-        hit.or_else(|| other.map(|Found { shape, distance }| self.hit(ray, shape, distance)))
-    }
-
-    /// Whether the ray meets any of the rest nearer than `limit`.
-    #[cfg(feature = "simd")]
-    #[inline]
-    pub(in crate::path) fn occluded_by_rest(&self, ray: &Ray, limit: f32) -> bool {
-        let other = |sweep: &Sweep| sweep.occluded_by_round(ray, limit);
-        self.sweep().is_some_and(other) || self.occluded_beside(ray, limit)
+    pub(in crate::path) fn boxes_beside(&self) -> Vec<[Vec3A; 2]> {
+        let soup = self.soup.iter().flat_map(Soup::boxes);
+        soup.chain(self.copies.iter().flat_map(Copies::boxes))
+            .collect()
     }
 
     /// The normal that light is scattered by, for laws that heed interpolated ones.
@@ -258,8 +241,9 @@ impl Geometry {
         shapes || self.occluded_beside(ray, limit)
     }
 
+    /// Whether the ray meets a triangle of a mesh or a copy nearer than `limit`.
     #[inline]
-    fn occluded_beside(&self, ray: &Ray, limit: f32) -> bool {
+    pub(in crate::path) fn occluded_beside(&self, ray: &Ray, limit: f32) -> bool {
         let soup = |soup: &Soup| soup.occluded(ray, limit);
         let copies = |copies: &Copies| copies.occluded(ray, limit);
         self.soup.as_ref().is_some_and(soup) || self.copies.as_ref().is_some_and(copies)

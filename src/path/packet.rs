@@ -4,6 +4,7 @@
 //! scattered ideally diffusely, in lanes; all else goes lane by lane. Every lane has the bits of [`Paths::radiance`]: the same
 //! arithmetic in the same order, the coordinates read in the same order.
 
+mod boxes;
 mod drawn;
 mod here;
 mod lamp;
@@ -30,6 +31,7 @@ use crate::Sampler;
 pub(in crate::path) use optics::{Emitted, FlatLight, Law, Optics};
 pub(in crate::path) use reuse::Keeper;
 
+use boxes::Boxes;
 use near::Near;
 use place::Table;
 use reuse::Sharing;
@@ -45,6 +47,8 @@ pub(in crate::path) struct Packet {
     /// Those of them that can be between two points of the scene.
     dividing: Shapes,
     solids: Option<Solids>,
+    /// Around all triangles and copies.
+    boxes: Boxes,
     lights: AreaLights,
     near: Option<Near>,
     /// The shape of each emitter.
@@ -108,7 +112,7 @@ impl Packet {
         smooth: bool,
     ) -> Option<Self> {
         let (primitives, sweep) = (geometry.shapes(), geometry.sweep()?);
-        let (flats, spheres) = (&sweep.flat_shapes, &sweep.ball_shapes);
+        let flats = &sweep.flat_shapes;
         // Which part a lane is at is kept in 32 bits, as the trees keep triangles and copies.
         u32::try_from(parts).ok()?;
         let known: Vec<_> = (0..parts).map(optics).collect();
@@ -118,6 +122,7 @@ impl Packet {
             shapes: Shapes::default(),
             dividing: Shapes::default(),
             solids: None,
+            boxes: Boxes(geometry.boxes_beside()),
             lights: lights.cloned().unwrap_or(AreaLights::NONE),
             near: None,
             emitters: Vec::new(),
@@ -150,21 +155,18 @@ impl Packet {
             }
         }
         let first = u32::try_from(flats.len()).ok()?;
-        let mut balls = Vec::new();
-        for (number, &shape) in (first..).zip(spheres) {
-            let Primitive::Sphere(sphere) = &primitives[shape] else {
-                return None;
-            };
-            balls.push((*sphere, shape));
-            packet.shapes.push_ball(number, sphere);
-            packet.dividing.push_ball(number, sphere);
+        let others = sweep.round.iter().map(|&(shape, _)| shape);
+        let round: Vec<_> = (sweep.ball_shapes.iter().copied().chain(others))
+            .map(|shape| (primitives[shape], shape))
+            .collect();
+        for (number, (shape, _)) in (first..).zip(&round) {
+            packet.shapes.push_round(number, shape);
+            packet.dividing.push_round(number, shape);
         }
-        let rest = geometry.has_rest();
-        if !balls.is_empty() || rest {
+        if !round.is_empty() || !packet.boxes.0.is_empty() {
             packet.solids = Some(Solids {
-                spheres: balls,
+                round,
                 first,
-                rest,
                 optics: known,
                 smooth,
             });

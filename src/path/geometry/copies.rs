@@ -140,6 +140,11 @@ impl Copies {
         around(self.copies.iter().map(Copied::bounds))
     }
 
+    #[cfg(feature = "simd")]
+    pub(super) fn boxes(&self) -> impl Iterator<Item = [Vec3A; 2]> {
+        self.tree.boxes()
+    }
+
     pub(super) fn nearest(&self, ray: &Ray, limit: f32) -> Option<(Hit, f32)> {
         let mut nearest = None;
         let found = self.tree.search(ray, limit, |copy, limit| {

@@ -1,6 +1,8 @@
 //! The inner nodes of a tree: eight boxes each.
 
 use bytemuck::{Pod, Zeroable};
+#[cfg(feature = "simd")]
+use glam::Vec3A;
 
 use super::flats::{LANES, Lanes};
 
@@ -67,6 +69,16 @@ impl Node {
             self.bounds[axis + 3][lane] = high[axis];
         }
         self.children[lane] = child;
+    }
+
+    /// The corners of a box.
+    #[cfg(feature = "simd")]
+    pub(super) fn corners(&self, lane: usize) -> [Vec3A; 2] {
+        let [low_x, low_y, low_z, high_x, high_y, high_z] = self.bounds.map(|ends| ends[lane]);
+        [
+            Vec3A::new(low_x, low_y, low_z),
+            Vec3A::new(high_x, high_y, high_z),
+        ]
     }
 
     #[inline(always)]

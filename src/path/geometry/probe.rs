@@ -69,7 +69,7 @@ impl Met {
 /// What rounding does to the distance of a box.[^ize]
 ///
 /// [^ize]: Ize, Thiago (2013). *Robust BVH Ray Traversal*. <https://jcgt.org/published/0002/02/02/>
-pub(super) const WIDER: f32 = 1.0 + 2.0 * gamma(3);
+pub(in crate::path) const WIDER: f32 = 1.0 + 2.0 * gamma(3);
 
 /// Which of the bounds of a box a ray enters through along each axis, as their place in [`Node::bounds`].
 #[inline(always)]

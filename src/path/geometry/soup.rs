@@ -93,6 +93,11 @@ impl Soup {
         self.bounds
     }
 
+    #[cfg(feature = "simd")]
+    pub(super) fn boxes(&self) -> impl Iterator<Item = [Vec3A; 2]> {
+        self.tree.boxes()
+    }
+
     #[inline]
     pub(super) fn nearest(&self, ray: &Ray, limit: f32) -> Option<Struck> {
         let blocks = self.blocks.as_slice();

@@ -26,8 +26,8 @@ pub(in crate::path) struct Sweep {
     balls: Vec<Balls>,
     /// Which shape each of the spheres is.
     pub(in crate::path) ball_shapes: Vec<usize>,
-    /// The other shapes, and which they are.
-    pub(super) round: Vec<(usize, Primitive)>,
+    /// The other shapes, disks before cylinders, and which they are.
+    pub(in crate::path) round: Vec<(usize, Primitive)>,
     #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     simd: Option<pulp::x86::V3>,
 }
@@ -44,6 +44,7 @@ impl Sweep {
             }
         }
         flats.sort_by_key(|(_, flat)| Kind::of(flat));
+        round.sort_by_key(|(_, other)| matches!(other, Primitive::Cylinder(_)));
         let in_order = flats.iter().map(|&(_, flat)| flat);
         let divides = in_order.clone().map(|flat| divides(flat, shapes, boxes));
         let divides: Vec<_> = divides.collect();
@@ -72,7 +73,7 @@ impl Sweep {
 
     /// The nearest shape before `limit` that is neither flat nor a sphere.
     #[inline]
-    pub(super) fn nearest_round(&self, ray: &Ray, mut limit: f32) -> Option<Found> {
+    fn nearest_round(&self, ray: &Ray, mut limit: f32) -> Option<Found> {
         let mut nearest = None;
         for &(shape, other) in &self.round {
             if let Some(distance) = other.intersect(ray, limit) {
@@ -101,7 +102,7 @@ impl Sweep {
 
     /// Whether the ray meets a shape nearer than `limit` that is neither flat nor a sphere.
     #[inline]
-    pub(super) fn occluded_by_round(&self, ray: &Ray, limit: f32) -> bool {
+    fn occluded_by_round(&self, ray: &Ray, limit: f32) -> bool {
         let mut round = self.round.iter();
         round.any(|(_, other)| other.intersect(ray, limit).is_some())
     }

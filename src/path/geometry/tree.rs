@@ -113,6 +113,15 @@ impl Tree {
         }
     }
 
+    /// The boxes that a walk begins with.
+    #[cfg(feature = "simd")]
+    pub(super) fn boxes(&self) -> impl Iterator<Item = [Vec3A; 2]> {
+        let root = &self.nodes.as_slice()[Child::ROOT.index()];
+        (0..LANES)
+            .map(|lane| root.corners(lane))
+            .filter(|[low, high]| low.cmple(*high).all())
+    }
+
     /// The shapes of each leaf.
     pub(super) fn leaves(&self) -> impl ExactSizeIterator<Item = impl Iterator<Item = usize> + '_> {
         self.leaves.iter().map(|leaf| {

@@ -9,17 +9,15 @@ use super::sweep::Shapes;
 use crate::path::Ray;
 use crate::path::geometry::{Geometry, Hit};
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
-use crate::path::shape::{Shape, Sphere};
+use crate::path::shape::{Primitive, Shape};
 
-/// What is not flat in a scene: spheres, and the rest that the [`Geometry`] finds.
+/// What is not flat in a scene: round shapes, and the meshes and copies that the [`Geometry`] finds.
 #[derive(Debug)]
 pub(super) struct Solids {
-    /// The spheres, and which parts of the scene they are.
-    pub(super) spheres: Vec<(Sphere, usize)>,
-    /// The number of the first sphere among the shapes; those of the others follow.
+    /// The round shapes, and which parts of the scene they are.
+    pub(super) round: Vec<(Primitive, usize)>,
+    /// The number of the first of them among the shapes; those of the others follow.
     pub(super) first: u32,
-    /// Whether there is anything else.
-    pub(super) rest: bool,
     /// What all parts do to light.
     pub(super) optics: Vec<Optics>,
     /// Whether laws heed interpolated normals.
@@ -188,18 +186,20 @@ impl Rays<'_> {
 }
 
 impl Solids {
-    /// The solids that rays meet, of which those to the shapes `shapes` are met at the limit; spheres among them.
+    /// The solids that rays meet, of which those to the shapes `shapes` are met at the limit; round ones among them. Meshes and copies are
+    /// only looked for in the lanes that have 1 in `near`.
     #[inline(never)]
     pub(super) fn nearest(
         &self,
         geometry: &Geometry,
         rays: &Rays<'_>,
+        near: &Row<f32>,
         shapes: &Row<u32>,
     ) -> Points {
         let mut points = Points::NONE;
         for (lane, ray, limit) in rays.each() {
-            if self.rest
-                && let Some(hit) = geometry.nearest_of_rest(&ray, limit)
+            if near.0[lane] > 0.0
+                && let Some((hit, _)) = geometry.nearest_beside(&ray, limit)
             {
                 let shading = if self.smooth {
                     geometry.normal(&hit)
@@ -208,12 +208,12 @@ impl Solids {
                 };
                 points.set(lane, &self.optics[hit.part], &hit, shading);
             } else if limit < f32::INFINITY
-                && let Some(sphere) = shapes.0[lane].checked_sub(self.first)
+                && let Some(round) = shapes.0[lane].checked_sub(self.first)
             {
-                let (sphere, part) = &self.spheres[sphere as usize];
+                let (shape, part) = &self.round[round as usize];
                 let hit = Hit {
                     part: *part,
-                    surface: sphere.surface(&ray, limit),
+                    surface: shape.surface(&ray, limit),
                     triangle: 0,
                     along: Vec2::ZERO,
                     copy: None,
@@ -238,29 +238,32 @@ impl Packet {
     ) -> Mask<S> {
         let simd = limit.simd();
         let visible = !between.occluded(start, into, limit, !active);
-        let solids = self.solids.as_ref().filter(|_| !PLAIN);
-        if !solids.is_some_and(|solids| solids.rest) {
+        if PLAIN || self.boxes.0.is_empty() {
+            return visible;
+        }
+        let near = visible & self.boxes.entered(start, into, limit);
+        if !near.any() {
             return visible;
         }
         let rays = Rays {
             origin: &start.rows(),
             direction: &into.rows(),
             limit: &limit.row(),
-            active: &visible.row(simd),
+            active: &near.row(simd),
         };
-        let passes = passes(geometry(), &rays);
-        Real::load(simd, &passes).gt(Real::splat(simd, 0.0))
+        let blocked = blocked(geometry(), &rays);
+        visible & Real::load(simd, &blocked).eq(Real::splat(simd, 0.0))
     }
 }
 
-/// 1 in the lanes whose rays meet nothing but flat shapes and spheres, 0 in all others.
+/// 1 in the lanes whose rays meet a mesh or a copy, 0 in all others.
 #[inline(never)]
-fn passes(geometry: &Geometry, rays: &Rays<'_>) -> Row<f32> {
-    let mut passes = Row::<f32>::ZERO;
+fn blocked(geometry: &Geometry, rays: &Rays<'_>) -> Row<f32> {
+    let mut blocked = Row::<f32>::ZERO;
     for (lane, ray, limit) in rays.each() {
-        if !geometry.occluded_by_rest(&ray, limit) {
-            passes.0[lane] = 1.0;
+        if geometry.occluded_beside(&ray, limit) {
+            blocked.0[lane] = 1.0;
         }
     }
-    passes
+    blocked
 }

@@ -1,11 +1,15 @@
 //! Which shapes the rays of all lanes meet.
 
+mod round;
+
 use glam::Vec3A;
 use pulp::Simd;
 
 use crate::path::geometry::{Kind, axis};
 use crate::path::lanes::{Index, Mask, Real, Row, Vector};
-use crate::path::shape::{Flat, Sphere};
+use crate::path::shape::{Cylinder, Disk, Flat, Primitive};
+
+use round::Ball;
 
 /// The shapes, by how simple their equations are.
 #[derive(Debug, Default)]
@@ -13,15 +17,9 @@ pub(super) struct Shapes {
     aligned: [Vec<Aligned>; 3],
     parallelograms: Vec<Numbered>,
     triangles: Vec<Numbered>,
-    balls: Vec<Ball>,
-}
-
-/// A sphere.
-#[derive(Clone, Copy, Debug)]
-struct Ball {
-    shape: u32,
-    center: Vec3A,
-    squared_radius: f32,
+    balls: Vec<(u32, Ball)>,
+    disks: Vec<(u32, Disk)>,
+    cylinders: Vec<(u32, Cylinder)>,
 }
 
 /// A rectangle whose normal is the axis `k` and whose edges run along the axes `k + 1` and `k + 2`, modulo 3.
@@ -127,13 +125,14 @@ impl Shapes {
         }
     }
 
-    /// Adds a sphere. All flat shapes must have been added before.
-    pub(super) fn push_ball(&mut self, shape: u32, sphere: &Sphere) {
-        self.balls.push(Ball {
-            shape,
-            center: sphere.center(),
-            squared_radius: sphere.squared_radius(),
-        });
+    /// Adds a shape that is not flat. All flat ones must have been added before, spheres before disks, and those before cylinders.
+    pub(super) fn push_round(&mut self, shape: u32, round: &Primitive) {
+        match *round {
+            Primitive::Flat(_) => unreachable!("flat shapes are others"),
+            Primitive::Sphere(sphere) => self.balls.push((shape, Ball::new(&sphere))),
+            Primitive::Disk(disk) => self.disks.push((shape, disk)),
+            Primitive::Cylinder(cylinder) => self.cylinders.push((shape, cylinder)),
+        }
     }
 
     /// The nearest shape in each lane.
@@ -168,8 +167,14 @@ impl Shapes {
         for flat in &self.triangles {
             hit = hit.nearer(flat.shape, flat.triangle(simd, origin, direction));
         }
-        for ball in &self.balls {
-            hit = hit.nearer(ball.shape, ball.meet(simd, origin, direction));
+        for (shape, ball) in &self.balls {
+            hit = hit.nearer(*shape, ball.meet(simd, origin, direction));
+        }
+        for (shape, disk) in &self.disks {
+            hit = hit.nearer(*shape, disk.meet(simd, origin, direction));
+        }
+        for (shape, cylinder) in &self.cylinders {
+            hit = hit.nearer(*shape, cylinder.meet(simd, origin, direction));
         }
         hit
     }
@@ -203,35 +208,19 @@ impl Shapes {
             let met = flat.triangle(simd, origin, direction);
             blocked = blocked | (met.inside & met.distance.lt(limit));
         }
-        for ball in &self.balls {
+        for (_, ball) in &self.balls {
             let met = ball.meet(simd, origin, direction);
             blocked = blocked | (met.inside & met.distance.lt(limit));
         }
-        blocked
-    }
-}
-
-impl Ball {
-    /// As [`Sphere::intersect`](crate::path::shape::Shape::intersect); no coordinates.
-    #[inline(always)]
-    fn meet<S: Simd>(&self, simd: S, origin: Vector<S>, direction: Vector<S>) -> Meeting<S> {
-        let zero = Real::splat(simd, 0.0);
-        let squared_radius = Real::splat(simd, self.squared_radius);
-        let offset = Vector::splat(simd, self.center) - origin;
-        let middle = offset.dot(direction);
-        let apart = offset - direction * middle;
-        let discriminant = squared_radius - apart.dot(apart);
-        let far = middle + discriminant.sqrt().copysign(middle);
-        let near = (offset.dot(offset) - squared_radius) / far;
-        let ordered = near.lt(far);
-        let (first, second) = (ordered.select(near, far), ordered.select(far, near));
-        let distance = first.gt(zero).select(first, second);
-        Meeting {
-            distance,
-            s: zero,
-            t: zero,
-            inside: discriminant.ge(zero) & distance.gt(zero),
+        for (_, disk) in &self.disks {
+            let met = disk.meet(simd, origin, direction);
+            blocked = blocked | (met.inside & met.distance.lt(limit));
         }
+        for (_, cylinder) in &self.cylinders {
+            let met = cylinder.meet(simd, origin, direction);
+            blocked = blocked | (met.inside & met.distance.lt(limit));
+        }
+        blocked
     }
 }
 

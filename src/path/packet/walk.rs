@@ -171,7 +171,9 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
                 limit: &hit.distance.row(),
                 active: &walking.row(simd),
             };
-            solids.nearest(self.single.geometry(), &rays, &hit.shapes())
+            let near = packet.boxes.entered(origin, direction, hit.distance);
+            let near = near.row(simd);
+            solids.nearest(self.single.geometry(), &rays, &near, &hit.shapes())
         });
         if let Some(solids) = &solids {
             met = met | solids.met(simd);

@@ -15,11 +15,11 @@ use crate::path::{Facet, Shading};
 /// The texture coordinates are the azimuth and the height, both in `[0, 1]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
-    start: Vec3A,
+    pub(in crate::path) start: Vec3A,
     /// Across, across, and along, of length 1.
-    axes: [Vec3A; 3],
-    radius: f32,
-    length: f32,
+    pub(in crate::path) axes: [Vec3A; 3],
+    pub(in crate::path) radius: f32,
+    pub(in crate::path) length: f32,
     /// 1, or -1 if the outer side is inside.
     side: f32,
     /// What the margin follows from.

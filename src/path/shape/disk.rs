@@ -16,15 +16,15 @@ use crate::warp::{Disk as UnitDisk, Warp};
 /// The texture coordinates are the distance from the centre and the azimuth, both in `[0, 1]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disk {
-    center: Vec3A,
-    normal: Vec3A,
+    pub(in crate::path) center: Vec3A,
+    pub(in crate::path) normal: Vec3A,
     first: Vec3A,
     second: Vec3A,
     /// `first_dual . first = 1`, `first_dual . second = 0`, and the other way round.
-    first_dual: Vec3A,
-    second_dual: Vec3A,
+    pub(in crate::path) first_dual: Vec3A,
+    pub(in crate::path) second_dual: Vec3A,
     /// How far outside 1 rounding may find the distance of a hit from the centre.
-    slack: f32,
+    pub(in crate::path) slack: f32,
     margin: f32,
     area: f32,
 }

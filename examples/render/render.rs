@@ -254,6 +254,8 @@ impl Job<'_> {
         let before = lock(state).seconds;
         let start = Instant::now();
         let (mut saved, mut pause) = (Instant::now(), SAVE);
+        // It takes a look at every pixel, and changes with the passes alone.
+        let (mut passes, mut noise) = (0, None);
         while !finished.load(Ordering::Relaxed) {
             std::thread::sleep(TICK);
             let seconds = before + start.elapsed().as_secs_f64();
@@ -262,8 +264,11 @@ impl Job<'_> {
                 let next = state.pass.clone().or_else(|| self.next(&state));
                 let next = next.map_or(0, |pass| pass.count());
                 let done = state.samples as f64 + state.part() * next as f64;
-                let fraction = self.plan.fraction(done, seconds, state.noise());
-                progress.show(fraction, state.paths, seconds, state.noise());
+                if passes != state.passes {
+                    (passes, noise) = (state.passes, state.noise());
+                }
+                let fraction = self.plan.fraction(done, seconds, noise);
+                progress.show(fraction, state.paths, seconds, noise);
             }
             let Some(checkpoint) = self.checkpoint else {
                 continue;

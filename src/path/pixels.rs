@@ -9,6 +9,7 @@ use super::sensor::Sensor;
 use crate::points::{PointSet, Skipped};
 use crate::recorder::Recorder;
 use crate::{Average, Estimator, Integrand, NonFinite, Outcome};
+use core::cell::Cell;
 use glam::Vec3;
 #[cfg(feature = "simd")]
 use {
@@ -174,10 +175,13 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         cut: &dyn Fn(&Share<P>) -> u64,
         rule: NonFinite,
     ) -> Option<Vec<[Part; 2]>> {
+        let ahead = self.ahead(size);
         let pixels = Pixels {
             reused_by: self.paths.reused_by,
             rule,
-            follow: &|runs: &[Run<'_, P>], groups, traces| self.trace(size, runs, groups, traces),
+            follow: &|runs: &[Run<'_, P>], groups, traces| {
+                self.trace(size, runs, groups, traces, &ahead);
+            },
             coordinates: &|share, index| {
                 let mut coordinates = Vec::new();
                 let mut recorder = Recorder {
@@ -191,6 +195,13 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         (self.paths.reused_by > 1).then(|| pixels.parts(shares, cut))
     }
 
+    /// Before any path is followed.
+    pub(in crate::path) fn ahead(&self, size: [u32; 2]) -> Ahead {
+        Ahead {
+            width: Cell::new(self.pixel([0; 2], size).dimensions()),
+        }
+    }
+
     /// Follows the paths of some runs, and shares the light of some groups.
     pub(in crate::path) fn trace<P: PointSet>(
         &self,
@@ -198,6 +209,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         runs: &[Run<'_, P>],
         groups: &[Group],
         traces: &mut Traces,
+        ahead: &Ahead,
     ) {
         #[cfg(feature = "simd")]
         if let Some(packet) = self.pixel([0; 2], size).packet() {
@@ -208,9 +220,10 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
                 roulette: &self.paths.roulette,
                 of: &of,
             };
-            self.follow(packet, size, runs, &mut Vec::new(), Some(keeper));
+            self.follow(packet, size, runs, ahead, &mut Vec::new(), Some(keeper));
             return packet.share(self.scene.geometry(), groups, traces);
         }
+        let _ = ahead;
         self.trace_singly(size, runs, groups, traces);
     }
 
@@ -298,6 +311,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     ) -> Vec<T> {
         let mut outcomes = Vec::with_capacity(shares.len());
         let mut values = Vec::new();
+        let ahead = self.ahead(size);
         while !shares.is_empty() {
             let mut points = 0;
             let mut more = |share: &Share<P>| {
@@ -311,7 +325,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
                 .iter()
                 .map(|share| Run::of(share, few(share)))
                 .collect();
-            self.follow(packet, size, &runs, &mut values, None);
+            self.follow(packet, size, &runs, &ahead, &mut values, None);
             let mut given = &values[..];
             outcomes.extend(batch.iter().map(|share| {
                 let (own, others) = given.split_at(few(share));
@@ -329,12 +343,13 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         packet: &Packet,
         size: [u32; 2],
         runs: &[Run<'_, P>],
+        reach: &Ahead,
         values: &mut Vec<Vec3>,
         keeper: Option<Keeper<'_>>,
     ) {
         // Any pixel will do for all that is asked but where paths begin.
         let any = self.pixel([0; 2], size);
-        let width = |run: &Run<'_, P>| any.dimensions().min(run.share.points.dimensions());
+        let width = |run: &Run<'_, P>| reach.width.get().min(run.share.points.dimensions());
         let rows = |run: &Run<'_, P>| run.length() * width(run) as usize;
         let length = runs.iter().map(rows).sum();
         with_room(length, |ahead| {
@@ -359,7 +374,37 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
             values.resize(samplers.len(), Vec3::ZERO);
             let start = |point: usize, u: &mut _| self.pixel(pixels[point], size).start(u);
             packet.radiance(self.paths, &any, &start, &mut samplers, values, keeper);
+            reach.learn(samplers.iter().map(Cursor::dimension));
         });
+    }
+}
+
+/// How many coordinates are computed ahead of paths: no result depends on it.
+pub(in crate::path) struct Ahead {
+    width: Cell<u32>,
+}
+
+#[cfg(feature = "simd")]
+impl Ahead {
+    /// A coordinate alone takes as long as so many of those that are computed together, about.
+    const ALONE: usize = 32;
+
+    /// For the next paths, as many as those that were followed just now should have had: what so few of them have `read` is not worth
+    /// computing for all.
+    fn learn(&self, read: impl ExactSizeIterator<Item = u32>) {
+        const MOST: usize = 64;
+        let few = read.len() / Self::ALONE;
+        let mut counts = [0; MOST + 1];
+        for width in read {
+            counts[MOST.min(width as usize)] += 1;
+        }
+        let mut longer = 0;
+        let shorter = counts.iter().rposition(|count| {
+            longer += count;
+            longer > few
+        });
+        #[expect(clippy::cast_possible_truncation, reason = "at most 64")]
+        self.width.set(shorter.unwrap_or(0) as u32);
     }
 }
 

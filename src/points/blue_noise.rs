@@ -134,8 +134,8 @@ const PAIRS: usize = TOGETHER / 2;
 /// Samples that are computed at once.
 const LANES: usize = 64;
 
-/// Numbers that all lanes are made of by one digit more.
-const NODES: usize = LANES / 4;
+/// As many as are computed in any case: a vector of the widest.
+const GROUP: usize = 8;
 
 impl BlueNoisePixel {
     /// Writes the coordinates in the dimensions of `pairs`, [`PAIRS`] at most, into their columns of the block.
@@ -200,8 +200,6 @@ impl Pair {
     /// Writes the coordinates of all samples with the lowest `above` bits of `index` before their last `bits` bits.
     #[inline(always)]
     fn write(&self, index: u64, above: u32, bits: u32, room: &mut [[f64; LANES]; 2]) {
-        /// As many as are computed in any case.
-        const GROUP: usize = 8;
         let curve = self.curve.followed_by(index, above);
         let places = curve.followed_by_all(bits);
         let groups = (1_usize << bits).div_ceil(GROUP);
@@ -283,36 +281,43 @@ impl Curve {
         let mut images = [0; LANES];
         let mut done = 0;
         while done + 1 < bits {
-            let words = self.orders(done);
-            let mut fours = [0; NODES];
-            for ((four, &image), &word) in fours.iter_mut().zip(&images).zip(&words) {
-                let image = |digit| u64::from(image) << 2 | permute_4(word, digit);
-                *four = image(0) | image(1) << 16 | image(2) << 32 | image(3) << 48;
-            }
-            for (images, four) in images.as_chunks_mut().0.iter_mut().zip(fours) {
-                *images = [0, 16, 32, 48].map(|shift| (four >> shift) as u16);
+            // From the last ones on, since what they become takes more room, and from their place on.
+            for group in (0..(1_usize << done).div_ceil(GROUP)).rev() {
+                let (nodes, words) = self.nodes(&images, done, group);
+                let mut fours = [0; GROUP];
+                for ((four, &image), &word) in fours.iter_mut().zip(&nodes).zip(&words) {
+                    let image = |digit| u64::from(image) << 2 | permute_4(word, digit);
+                    *four = image(0) | image(1) << 16 | image(2) << 32 | image(3) << 48;
+                }
+                let images = images.as_chunks_mut().0[group * GROUP..].iter_mut();
+                for (images, four) in images.zip(fours) {
+                    *images = [0, 16, 32, 48].map(|shift| (four >> shift) as u16);
+                }
             }
             done += 2;
         }
         if done < bits {
-            let nodes = images;
-            let twos = images.as_chunks_mut().0.iter_mut();
-            for ((two, image), word) in twos.zip(nodes).zip(self.orders(done)) {
-                *two = [0, 1].map(|digit| image << 1 | permute_2(word, digit) as u16);
+            for group in (0..(1_usize << done).div_ceil(GROUP)).rev() {
+                let (nodes, words) = self.nodes(&images, done, group);
+                let images = images.as_chunks_mut().0[group * GROUP..].iter_mut();
+                for ((two, image), word) in images.zip(nodes).zip(words) {
+                    *two = [0, 1].map(|digit| image << 1 | permute_2(word, digit) as u16);
+                }
             }
         }
         images
     }
 
-    /// What chooses the permutations of the digits after all numbers of `bits` bits that may come next; and some more, so that
-    /// the compiler knows how many they are.
+    /// Some of the numbers of `bits` bits that may come next: what they have become, and what chooses the permutations of the digits
+    /// after them.
     #[inline(always)]
-    fn orders(self, bits: u32) -> [u64; NODES] {
-        let mut words = [0; NODES];
-        for (word, node) in words.iter_mut().zip(0..) {
+    fn nodes(self, images: &[u16; LANES], bits: u32, group: usize) -> ([u16; GROUP], [u64; GROUP]) {
+        let nodes = images.as_chunks().0[group];
+        let mut words = [0; GROUP];
+        for (word, node) in words.iter_mut().zip((group * GROUP) as u64..) {
             *word = self.order(self.digits << bits | node);
         }
-        words
+        (nodes, words)
     }
 
     /// What chooses the permutation of the digit that comes after the `digits`.

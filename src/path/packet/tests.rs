@@ -71,10 +71,11 @@ fn parts_of_pixels<B: Bsdf, L: Light, E: Environment>(
     view: &View<B, L, E, Pinhole>,
     reused_by: u32,
 ) -> Vec<[Part; 2]> {
+    let ahead = view.ahead([7, 5]);
     let pixels = Pixels {
         reused_by,
         rule: NonFinite::Reject,
-        follow: &|runs, groups, traces| view.trace([7, 5], runs, groups, traces),
+        follow: &|runs, groups, traces| view.trace([7, 5], runs, groups, traces, &ahead),
         coordinates: &|_, _| Vec::new(),
     };
     pixels.parts(&shares(), &|share| share.count / 3)

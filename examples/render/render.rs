@@ -8,8 +8,7 @@ use std::time::{Duration, Instant};
 use estimand::mitsuba::Picture;
 use estimand::path::{Allocation, Share};
 use estimand::points::PointSet;
-use estimand::{Estimate, Incomplete, each, hash};
-use glam::DVec3;
+use estimand::{each, hash};
 
 use crate::checkpoint::Checkpoint;
 use crate::plan::{Pass, Plan};
@@ -27,9 +26,6 @@ const SAVE_RATIO: u32 = 20;
 /// How many paths of neighbouring pixels are asked for at once, about: many, since lanes are idle at their end, but few enough for
 /// Ctrl-C not to wait.
 const ASKED: u64 = 4096;
-
-/// The mean of a part of a pixel.
-type Outcome = Result<Estimate<DVec3>, Incomplete<DVec3>>;
 
 /// A picture to be rendered.
 pub(crate) struct Job<'a> {
@@ -199,53 +195,28 @@ impl Job<'_> {
                     count: *count,
                 })
                 .collect();
-            for (share, outcomes) in shares.iter().zip(self.parts(&shares, &row)) {
-                let [x, y] = share.position;
-                for (part, outcome) in row.pixels[x as usize].iter_mut().zip(outcomes) {
-                    match outcome {
-                        None => {}
-                        Some(Ok(estimate)) => {
-                            part.mean = Some(estimate.mean.to_array());
-                            row.paths += estimate.used;
-                            row.rejected += estimate.rejected;
-                        }
-                        // Other parts may have some.
-                        Some(Err(Incomplete {
-                            reason: estimand::Error::NothingLeft { rejected },
-                            ..
-                        })) => {
-                            row.paths += rejected;
-                            row.rejected += rejected;
-                        }
-                        Some(Err(error)) => return Err(format!("pixel ({x}, {y}): {error}")),
-                    }
-                }
-            }
+            self.means(&shares, &mut row)?;
         }
         lock(state).add(at, row);
         Ok(true)
     }
 
-    /// The means of the parts that the pixels have in a row.
-    fn parts(&self, shares: &[Share<&dyn PointSet>], row: &Row) -> Vec<[Option<Outcome>; 2]> {
+    /// Adds the means of the parts that the pixels have in a row to it.
+    fn means(&self, shares: &[Share<&dyn PointSet>], row: &mut Row) -> Result<(), String> {
         let cut = |share: &Share<&dyn PointSet>| row.pixels[share.position[0] as usize][0].samples;
         if shares.iter().all(|share| cut(share) == 0) {
-            let outcomes = self.picture.averages(self.size, shares);
-            return outcomes
-                .into_iter()
-                .map(|outcome| [None, Some(outcome)])
-                .collect();
+            let means = self.picture.averages(self.size, shares);
+            let mut means = shares.iter().zip(means);
+            return means.try_for_each(|(share, mean)| row.add(share.position, 1, mean));
         }
-        let outcomes = self.picture.averages_in_two(self.size, shares, &cut);
-        let parts = shares.iter().zip(outcomes);
-        parts
-            .map(|(share, [first, others])| {
-                [
-                    (cut(share) > 0).then_some(first),
-                    (cut(share) < share.count).then_some(others),
-                ]
-            })
-            .collect()
+        for (share, means) in
+            (shares.iter()).zip(self.picture.averages_in_two(self.size, shares, &cut))
+        {
+            for (part, mean) in means.into_iter().enumerate() {
+                row.add(share.position, part, mean)?;
+            }
+        }
+        Ok(())
     }
 
     /// Shows the progress and saves the work from time to time, until it is finished.

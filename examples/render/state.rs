@@ -1,11 +1,14 @@
 //! What has been rendered so far.
 
-use estimand::Error;
 use estimand::path::{Allocation, Image};
+use estimand::{Error, Estimate, Incomplete};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::plan::Pass;
+
+/// The mean of a part of a pixel.
+type Mean = Result<Estimate<DVec3>, Incomplete<DVec3>>;
 
 /// What has been rendered so far: all of some passes, and some rows of one.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -48,6 +51,33 @@ pub(crate) struct Row {
     pub(crate) pixels: Vec<[Part; 2]>,
     pub(crate) paths: u64,
     pub(crate) rejected: u64,
+}
+
+impl Row {
+    /// Adds the mean of a part of a pixel, if the part has samples.
+    pub(crate) fn add(&mut self, [x, y]: [u32; 2], part: usize, mean: Mean) -> Result<(), String> {
+        let part = &mut self.pixels[x as usize][part];
+        if part.samples == 0 {
+            return Ok(());
+        }
+        match mean {
+            Ok(estimate) => {
+                part.mean = Some(estimate.mean.to_array());
+                self.paths += estimate.used;
+                self.rejected += estimate.rejected;
+            }
+            // Other parts may have some.
+            Err(Incomplete {
+                reason: Error::NothingLeft { rejected },
+                ..
+            }) => {
+                self.paths += rejected;
+                self.rejected += rejected;
+            }
+            Err(error) => return Err(format!("pixel ({x}, {y}): {error}")),
+        }
+        Ok(())
+    }
 }
 
 /// Some samples of a pixel.

@@ -20,7 +20,7 @@ pub(super) struct Stack {
 }
 
 /// A power of two.
-const ROOM: usize = 64;
+const ROOM: usize = 32;
 
 impl Stack {
     /// Nothing. No constant, which would be copied from memory for every ray: a machine is quick to write zeros.

@@ -65,6 +65,11 @@ pub trait Progressive: Estimator {
     /// The estimate that the work so far gives; `None` if there is no value yet.
     fn conclude<V: Value>(&self, state: &Self::State<V>) -> Option<Estimate<V>>;
 
+    /// How many evaluations one thread makes at a time: fewer than that for each thread leave some idle.
+    fn portion(&self) -> u64 {
+        1024
+    }
+
     /// The number of evaluations at which a test of the error is worth while, after one at `evaluations`.
     ///
     /// Points that are best in powers of two double.

@@ -4,9 +4,11 @@
 #[cfg(feature = "parallel")]
 mod threads;
 #[cfg(feature = "parallel")]
-pub(crate) use threads::{both, inside};
+pub(crate) use threads::number;
 #[cfg(feature = "parallel")]
-use threads::{number, take_in_order};
+use threads::take_in_order;
+#[cfg(feature = "parallel")]
+pub(crate) use threads::{both, inside};
 
 /// Runs `job` for `0..count` and hands the results to `take` in the order of their indices.
 ///
@@ -53,7 +55,7 @@ pub(crate) fn in_order<T: Send, E: Send>(
 ///
 /// # Panics
 ///
-/// If `count` values do not fit into memory, of which each takes up to 24 bytes more while they are computed.
+/// If `count` values do not fit into memory, twice and some 16 bytes more for each while they are computed.
 pub fn each<T: Send>(count: u64, job: impl Fn(u64) -> T + Sync) -> Vec<T> {
     if count <= 1 || number() == 1 {
         return (0..count).map(job).collect();
@@ -93,7 +95,7 @@ pub(crate) fn at_each<S: Sync, T: Send>(
 
 /// How many jobs can run at a time.
 #[cfg(not(feature = "parallel"))]
-fn number() -> usize {
+pub(crate) fn number() -> usize {
     1
 }
 

@@ -7,7 +7,12 @@ use std::time::{Duration, Instant};
 use crate::evaluate::Wide;
 use crate::{
     Error, Estimate, Estimator, Incomplete, Integrand, Outcome, Progressive, Stop, Value, Warning,
+    reduce,
 };
+
+mod pace;
+
+use pace::Pace;
 
 /// An estimator with rules when to stop: the first that applies ends it. Made by [`Progressive::until`].
 ///
@@ -26,7 +31,9 @@ use crate::{
 ///
 /// # Time and callback
 ///
-/// Both are asked in between, some twenty times a second, as far as the integrand allows. What they stop is still a
+/// Both are asked in between, some twenty times a second, as far as the integrand allows: where that would leave threads idle, which make
+/// some [hundreds or thousands](Progressive::portion) of evaluations at a time, once a second at the least; and where one evaluation takes
+/// longer, after each. What they stop is still a
 /// full estimate, of the evaluations made by then; which they are depends on the machine, unlike everything else
 /// in this crate.
 #[must_use]
@@ -177,13 +184,11 @@ impl<E: Progressive> Until<E> {
         integrand: &I,
         clock: &Instant,
     ) -> Result<Stop, Error> {
-        /// Seconds of work between two questions to clock and callback.
-        const PATIENCE: f64 = 0.05;
         let budget = self.estimator.budget();
         let tolerant = self.absolute > 0.0 || self.relative > 0.0;
         let asking = self.time.is_some() || self.watch.is_some();
         let mut used = self.estimator.used(state);
-        let mut stride = 16;
+        let mut pace = Pace::new(self.estimator.portion(), reduce::number());
         let mut look = if tolerant { self.least } else { budget };
         while look <= used {
             if tolerant && self.reached(state) {
@@ -196,19 +201,15 @@ impl<E: Progressive> Until<E> {
         }
         loop {
             let target = if asking {
-                look.min(used.saturating_add(stride))
+                look.min(used.saturating_add(pace.stride))
             } else {
                 look
             };
             let before = clock.elapsed().as_secs_f64();
             self.estimator.grow(state, integrand, target.min(budget))?;
             let seconds = clock.elapsed().as_secs_f64();
-            if seconds - before < PATIENCE {
-                stride = stride.saturating_mul(2);
-            } else {
-                stride = (stride / 2).max(1);
-            }
             let grown = self.estimator.used(state);
+            pace.adapt(seconds - before, grown.saturating_sub(used));
             let complete = grown >= budget || grown == used;
             used = grown;
             if used >= look || complete {

@@ -18,7 +18,7 @@ mod iterations;
 mod learner;
 mod squares;
 
-use adaptation::{Adaptation, Order, Pass};
+use adaptation::{Adaptation, Order, Pass, longest_part};
 use iterations::Together;
 
 pub use iterations::Iteration;
@@ -27,8 +27,8 @@ pub use iterations::Iteration;
 /// iteration, and a grid of strata whose numbers of points follow their variances.[^lepage]
 ///
 /// The first half of the iterations, five at most, only trains and is then forgotten. The others go on learning, each
-/// less than the one before, so that what they learn is averaged; each is unbiased whatever was learned before it, and their mean is weighted by their numbers of points, not by their claimed errors,
-/// which would bias it. An estimate that is stopped before is made of what training iterations there are, and in the first of them
+/// less than the one before, so that what they learn is averaged; each is unbiased whatever was learned before it. In their mean all weigh
+/// the same: weights by their claimed errors would bias it. An estimate that is stopped before is made of what training iterations there are, and in the first of them
 /// of a random sample of its strata, with [`Warning::Unvisited`]. A few points at the very beginning only find out how large the values are.
 ///
 /// A peak that no point of the first iterations hits is not there for it: the estimate then comes with
@@ -397,6 +397,10 @@ impl Progressive for Vegas {
 
     fn conclude<V: Value>(&self, state: &VegasState<V>) -> Option<Estimate<V>> {
         Some(self.estimate_of(state)?.0)
+    }
+
+    fn portion(&self) -> u64 {
+        longest_part(self.each())
     }
 
     /// The end of the next iteration.

@@ -9,12 +9,15 @@ use std::sync::{
 };
 
 /// How many jobs can run at a time.
-pub(super) fn number() -> usize {
+pub(crate) fn number() -> usize {
     rayon::current_num_threads()
 }
 
-/// Runs `work` on a thread of the pool, so that the loops in it need not change threads each.
+/// Runs `work` on a thread of the pool, so that the loops in it need not change threads each; here, if there is one thread only.
 pub(crate) fn inside(work: &mut (dyn FnMut() + Send)) {
+    if number() == 1 {
+        return work();
+    }
     rayon::scope(|_| work());
 }
 
@@ -28,8 +31,8 @@ pub(crate) fn both<A: Send, B: Send>(
 
 /// Hands the values of `job` to `take`, in order, until it returns `false`.
 ///
-/// This thread takes what is ready and runs jobs between, the others run jobs: nobody waits for anybody before the jobs
-/// run out.
+/// This thread takes what is ready and runs jobs between, the others run jobs: nobody waits for anybody before these
+/// run out. If any of them panics no more are begun.
 pub(super) fn take_in_order<T: Send>(
     jobs: Range<u64>,
     job: &(dyn Fn(u64) -> T + Sync),
@@ -44,21 +47,28 @@ pub(super) fn take_in_order<T: Send>(
         let Some(place) = places.get(number) else {
             return false;
         };
+        let last = OnPanic(&next, length);
         let value = job(jobs.start + number as u64);
         *open(place) = Some(value);
+        core::mem::forget(last);
         true
     };
     let mut waiting = places.iter().peekable();
     let mut wanted = true;
     let mut take_ready = || {
+        let last = OnPanic(&next, length);
         while wanted && let Some(value) = waiting.peek().and_then(|place| open(place).take()) {
             waiting.next();
             wanted = take(value);
         }
+        core::mem::forget(last);
         wanted
     };
     let helpers = number().min(length) - 1;
-    beside(helpers, &|| while run_one() {}, &mut || {
+    rayon::scope(|scope| {
+        for _ in 0..helpers {
+            scope.spawn(|scope| help(scope, &run_one));
+        }
         while take_ready() && run_one() {}
         // Nobody begins another one, if there is any left.
         next.store(length, Ordering::Relaxed);
@@ -66,16 +76,48 @@ pub(super) fn take_in_order<T: Send>(
     take_ready();
 }
 
+/// Runs one job, and has the next one run by whoever is free: a thread that waits for others, and helps here in the meantime, is
+/// not kept for longer than a job.
+fn help<'a>(scope: &rayon::Scope<'a>, run_one: &'a (dyn Fn() -> bool + Sync)) {
+    if run_one() {
+        scope.spawn(move |scope| help(scope, run_one));
+    }
+}
+
+/// Sets the number of the next job to one past the last, if it is dropped: by a panic.
+struct OnPanic<'a>(&'a AtomicUsize, usize);
+
+impl Drop for OnPanic<'_> {
+    fn drop(&mut self) {
+        self.0.store(self.1, Ordering::Relaxed);
+    }
+}
+
 fn open<T>(place: &Mutex<T>) -> MutexGuard<'_, T> {
     place.lock().expect("nobody panics with it")
 }
 
-/// Runs `work` here while up to so many other threads run `help`; waits for them.
-fn beside(helpers: usize, help: &(dyn Fn() + Sync), work: &mut (dyn FnMut() + Send)) {
-    rayon::scope(|scope| {
-        for _ in 0..helpers {
-            scope.spawn(|_| help());
+#[cfg(test)]
+mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    use super::*;
+
+    #[test]
+    fn after_a_panic_no_job_is_begun() {
+        for who in [0, 7] {
+            let run = AtomicUsize::new(0);
+            let all = catch_unwind(AssertUnwindSafe(|| {
+                let job = |index| {
+                    run.fetch_add(1, Ordering::Relaxed);
+                    // The others wait, so that they have hardly begun.
+                    std::thread::sleep(core::time::Duration::from_millis(1));
+                    assert!(index != who, "as it should");
+                };
+                take_in_order(0..2000, &job, &mut |()| true);
+            }));
+            let run = run.into_inner();
+            assert!(all.is_err() && run < 1000, "{run} jobs");
         }
-        work();
-    });
+    }
 }

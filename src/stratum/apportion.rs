@@ -32,7 +32,11 @@ pub(crate) fn apportion<S: Sync>(
         share += part(block.sum, block.each.len() as f64);
         share
     });
-    let bounds: Vec<f64> = iter::once(0.0).chain(ends).collect();
+    let mut bounds: Vec<f64> = iter::once(0.0).chain(ends).collect();
+    // Whatever rounding has made of it.
+    if let Some(end) = bounds.last_mut() {
+        *end = 1.0;
+    }
     reduce::at_each(&scores, |place, block| {
         let mut share = bounds[place];
         let [mut given, last] = [share, bounds[place + 1]].map(|share| nearest(share, free));

@@ -1,4 +1,4 @@
-//! From stratum to stratum in a random order, and what is evaluated on the way.
+//! From stratum to stratum, and what is evaluated on the way.
 
 use core::ops::Range;
 
@@ -9,42 +9,55 @@ use crate::{Cursor, Error, NonFinite, Value, reduce};
 
 /// So many points in each stratum, one stratum after the other, in parts that can be evaluated side by side.
 pub(crate) struct Walk {
-    /// Which strata are visited, in their order.
-    order: Vec<u32>,
+    order: Order,
     /// The numbers of points up to and with each visit.
     ends: Vec<u64>,
     /// Points in a part at most, a power of two.
     longest: u64,
 }
 
-/// Points in the first part. The next ones are longer, so that what is quick is done in few parts and
-/// what is slow can be stopped.
+/// Which strata are visited, in their order.
+enum Order {
+    /// The first part is short, and the next ones are longer, so that what is quick is done in few parts and what is slow can be
+    /// stopped.
+    Shuffled(Vec<u32>),
+    /// All by their numbers. The last part is short, and those before are longer, so that nobody waits long for who has the last one.
+    InTurn,
+}
+
+/// Points in the shortest part.
 const SHORTEST: u64 = 256;
 
 impl Walk {
-    /// `counts[k]` points in stratum `k`; no part is longer than about `longest`.
+    /// `counts[k]` points in stratum `k`; no part is longer than `longest`, rounded up to a power of two.
     ///
     /// The order of the strata is random, one that `key` selects. So those that were visited first are a random sample of all,
     /// and a walk that has to stop early has an estimate to give.
     pub(crate) fn shuffled(counts: &[u64], key: u64, longest: u64) -> Self {
-        Self::new(counts, permuted(counts.len() as u64, key), longest)
+        let order = permuted(counts.len() as u64, key);
+        let counts_in_order = order.iter().map(|&stratum| counts[stratum as usize]);
+        Self::new(sums(counts_in_order), Order::Shuffled(order), longest)
     }
 
     /// The same with strata in the order of their numbers: less to do where nothing is said before the walk is complete.
     pub(crate) fn in_turn(counts: &[u64], longest: u64) -> Self {
-        Self::new(counts, (0..).take(counts.len()).collect(), longest)
+        Self::new(sums(counts.iter().copied()), Order::InTurn, longest)
     }
 
-    fn new(counts: &[u64], order: Vec<u32>, longest: u64) -> Self {
-        let mut end = 0;
-        let ends = order.iter().map(|&stratum| {
-            end += counts[stratum as usize];
-            end
-        });
+    fn new(ends: Vec<u64>, order: Order, longest: u64) -> Self {
         Self {
-            ends: ends.collect(),
             order,
+            ends,
             longest: longest.next_power_of_two().max(SHORTEST),
+        }
+    }
+
+    /// The stratum of a visit.
+    #[inline]
+    fn stratum(&self, visit: usize) -> usize {
+        match &self.order {
+            Order::Shuffled(order) => order[visit] as usize,
+            Order::InTurn => visit,
         }
     }
 
@@ -55,25 +68,53 @@ impl Walk {
 
     /// The first point of a part, or the end of the last.
     fn first_of(&self, part: u64) -> u64 {
-        let doublings = u64::from((self.longest / SHORTEST).ilog2());
+        match self.order {
+            Order::Shuffled(_) => self.growing(part),
+            Order::InTurn => {
+                let left = self.number().saturating_sub(part);
+                self.points() - self.growing(left)
+            }
+        }
+    }
+
+    /// The first point of a part, if parts become longer.
+    fn growing(&self, part: u64) -> u64 {
         let first = match part {
             0 => 0,
-            part if part <= doublings => SHORTEST << (part - 1),
-            part => self.longest.saturating_mul(part - doublings),
+            part if part <= self.doublings() => SHORTEST << (part - 1),
+            part => self.longest.saturating_mul(part - self.doublings()),
         };
         first.min(self.points())
     }
 
-    /// How many parts are needed for `count` points.
-    fn parts(&self, count: u64) -> u64 {
-        let doublings = u64::from((self.longest / SHORTEST).ilog2());
-        let count = count.min(self.points());
+    fn doublings(&self) -> u64 {
+        (self.longest / SHORTEST).ilog2().into()
+    }
+
+    /// How many parts there are.
+    fn number(&self) -> u64 {
+        let count = self.points();
         if count > self.longest {
-            doublings + count.div_ceil(self.longest)
+            self.doublings() + count.div_ceil(self.longest)
         } else {
             u64::from(count > 0)
                 + u64::from(count.div_ceil(SHORTEST).max(1).next_power_of_two().ilog2())
         }
+    }
+
+    /// How many parts are needed for `count` points.
+    fn parts(&self, count: u64) -> u64 {
+        let count = count.min(self.points());
+        let (mut enough, mut low) = (self.number(), 0);
+        while low < enough {
+            let middle = low.midpoint(enough);
+            if self.first_of(middle) >= count {
+                enough = middle;
+            } else {
+                low = middle + 1;
+            }
+        }
+        enough
     }
 
     /// Whether all points are in `visited`.
@@ -116,10 +157,10 @@ impl Walk {
 
     fn merge<V: Value>(&self, visited: &mut Visited<V>, given: Given<V>) {
         for (visit, stratum) in (given.first..).zip(&given.strata) {
-            visited.strata[self.order[visit] as usize].merge(stratum);
+            visited.strata[self.stratum(visit)].merge(stratum);
         }
         for (visit, weight) in given.left_out {
-            let stratum = self.order[visit] as usize;
+            let stratum = self.stratum(visit);
             visited.left_out.entry(stratum).or_default().push(weight);
         }
     }
@@ -197,13 +238,23 @@ impl Walk {
             let end = usize::try_from(end).map_or(number, |end| end.min(number));
             runs.push(Run {
                 visit,
-                stratum: self.order[visit] as usize,
+                stratum: self.stratum(visit),
                 points: start..end,
             });
             start = end;
         }
         visit
     }
+}
+
+/// The sums up to and with each number.
+fn sums(numbers: impl Iterator<Item = u64>) -> Vec<u64> {
+    numbers
+        .scan(0, |sum, number| {
+            *sum += number;
+            Some(*sum)
+        })
+        .collect()
 }
 
 /// Points of a batch that are in one stratum, one after the other.
@@ -353,28 +404,40 @@ mod tests {
 
     #[test]
     fn parts_follow_one_another_and_end_where_they_are_asked_to() {
+        let counts = [70_000, 2, 3];
         for longest in [256, 1024, 16_384] {
-            let walk = Walk::shuffled(&[70_000, 2, 3], 7, longest);
-            let parts = walk.parts(u64::MAX);
-            assert_eq!((walk.first_of(0), walk.first_of(parts)), (0, 70_005));
-            for part in 0..parts {
-                let (first, end) = (walk.first_of(part), walk.first_of(part + 1));
-                assert!(first < end && end - first <= longest, "{first} to {end}");
-                assert_eq!(walk.parts(first), part);
-                assert_eq!(walk.parts(first + 1), part + 1);
-            }
+            let walks = [
+                Walk::shuffled(&counts, 7, longest),
+                Walk::in_turn(&counts, longest),
+            ];
+            let [growing, shrinking] = walks.each_ref().map(|walk| {
+                let parts = walk.number();
+                assert_eq!((walk.first_of(0), walk.first_of(parts)), (0, 70_005));
+                assert_eq!((walk.parts(0), walk.parts(u64::MAX)), (0, parts));
+                let lengths = (0..parts).map(|part| {
+                    let (first, end) = (walk.first_of(part), walk.first_of(part + 1));
+                    assert!(first < end && end - first <= longest, "{first} to {end}");
+                    assert_eq!(walk.parts(first), part);
+                    assert_eq!(walk.parts(first + 1), part + 1);
+                    end - first
+                });
+                lengths.collect::<Vec<_>>()
+            });
+            assert!(growing.iter().eq(shrinking.iter().rev()));
+            assert_eq!(growing[0], 256);
         }
         assert_eq!(Walk::shuffled(&[], 0, 1).parts(u64::MAX), 0);
+        assert_eq!(Walk::in_turn(&[3], 1).parts(1), 1);
     }
 
     #[test]
     fn every_stratum_is_visited_once_with_its_points() {
         let counts: Vec<u64> = (2..40).collect();
         let walk = Walk::shuffled(&counts, 3, 256);
-        let mut seen = walk.order.clone();
+        let mut seen: Vec<_> = (0..counts.len()).map(|visit| walk.stratum(visit)).collect();
         for (visit, &stratum) in seen.iter().enumerate() {
             let before = visit.checked_sub(1).map_or(0, |visit| walk.ends[visit]);
-            assert_eq!(walk.ends[visit] - before, counts[stratum as usize]);
+            assert_eq!(walk.ends[visit] - before, counts[stratum]);
         }
         assert!(!seen.is_sorted());
         seen.sort_unstable();

@@ -123,8 +123,7 @@ impl<V: Value> Adaptation<V> {
         /// Coordinates computed ahead, and of how many points at most.
         const AHEAD: usize = 4096;
         const ROWS: usize = 256;
-        // Each part has its own sums for every bin: the more bins, the longer it is to be.
-        let longest = (self.points() / 32).clamp(4096, 16_384);
+        let longest = longest_part(self.points());
         let walk = match order {
             Order::Random => Walk::shuffled(&self.counts, seed, longest),
             Order::Number => Walk::in_turn(&self.counts, longest),
@@ -184,6 +183,11 @@ impl<V: Value> Adaptation<V> {
     }
 }
 
+/// The longest part of an iteration of `count` points: each has its own sums for every bin, so that it is not to be short.
+pub(super) fn longest_part(count: u64) -> u64 {
+    (count / 16).clamp(4096, 16_384)
+}
+
 /// How many of `count` points look for the scale.
 fn looks(count: u64) -> u64 {
     (count / 8).clamp(1, 256)
@@ -192,14 +196,20 @@ fn looks(count: u64) -> u64 {
 /// The mean squares of the bins of an axis. Of a bin without points nothing is known: it has the mean of the nearest
 /// bins with points, so that nothing is learned where nothing was seen.
 fn means(axis: &[Squares]) -> Vec<f64> {
-    (0..axis.len())
-        .map(|bin| {
-            let below = axis[..=bin].iter().rev().find_map(Squares::mean);
-            let above = axis[bin..].iter().find_map(Squares::mean);
-            match (below, above) {
-                (Some(below), Some(above)) => 0.5 * (below + above),
-                (one, other) => one.or(other).unwrap_or(0.0),
-            }
+    /// Of each bin, or of the last one before it that has any.
+    fn last_known<'a>(bins: impl Iterator<Item = &'a Squares>) -> Vec<Option<f64>> {
+        bins.scan(None, |known, bin| {
+            *known = bin.mean().or(*known);
+            Some(*known)
         })
         .collect()
+    }
+    let below = last_known(axis.iter());
+    let above = last_known(axis.iter().rev());
+    let both = below.into_iter().zip(above.into_iter().rev());
+    both.map(|pair| match pair {
+        (Some(below), Some(above)) => 0.5 * (below + above),
+        (one, other) => one.or(other).unwrap_or(0.0),
+    })
+    .collect()
 }

@@ -81,10 +81,16 @@ impl<I: Integrand> Visitor for Learner<'_, I> {
             coordinates: &mut coordinates,
         };
         let value = self.integrand.evaluate(&mut u).widen();
+        let weight = self.images.jacobians()[place];
         Look {
             coordinates,
-            value,
-            weight: self.images.jacobians()[place],
+            // One that is finite is not what was complained of.
+            value: if value.is_finite() {
+                value.map(|value| value * weight)
+            } else {
+                value
+            },
+            weight,
         }
     }
 }

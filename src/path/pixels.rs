@@ -381,6 +381,10 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
 
 /// How many coordinates are computed ahead of paths: no result depends on it.
 pub(in crate::path) struct Ahead {
+    #[cfg_attr(
+        not(feature = "simd"),
+        expect(dead_code, reason = "paths go one after the other")
+    )]
     width: Cell<u32>,
 }
 

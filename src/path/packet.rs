@@ -1,6 +1,6 @@
 //! Many paths at once, one in each lane of the vectors that the machine has.
 //!
-//! For scenes of few shapes, and meshes and copies. Rays look for flat shapes and spheres, and paths are lit by flat lights and
+//! For scenes of few shapes, and meshes and copies. Rays look for shapes and boxes around meshes and copies, and paths are lit by flat lights and
 //! scattered ideally diffusely, in lanes; all else goes lane by lane. Every lane has the bits of [`Paths::radiance`]: the same
 //! arithmetic in the same order, the coordinates read in the same order.
 

@@ -117,15 +117,26 @@ impl PointSet for BlueNoisePixel {
     fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
         let mut block = Block::new(first, dimensions, out, u32::MAX, 0);
         let pairs = block.dimensions.start / 2..block.dimensions.end.div_ceil(2);
+        // For all tiles: it takes a while to clear it.
+        let mut room = Room {
+            axes: Aligned([[[0.0; LANES]; 2]; PAIRS]),
+            rows: Rows::new(),
+        };
         for tile in pairs.clone().step_by(PAIRS) {
             #[expect(clippy::cast_possible_truncation, reason = "below the number of lanes")]
             let pairs = tile..pairs.end.min(tile + PAIRS as u32);
             vectorised(
                 #[inline(always)]
-                || self.fill_tile(&mut block, pairs),
+                || self.fill_tile(&mut block, pairs, &mut room),
             );
         }
     }
+}
+
+/// Room for the coordinates of some samples, axis by axis, and side by side.
+struct Room {
+    axes: Aligned<[[[f64; LANES]; 2]; PAIRS]>,
+    rows: Rows<LANES>,
 }
 
 /// Pairs of dimensions that are computed before their coordinates are put in their places.
@@ -141,7 +152,7 @@ impl BlueNoisePixel {
     /// Writes the coordinates in the dimensions of `pairs`, [`PAIRS`] at most, into their columns of the block.
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "below the number of lanes")]
-    fn fill_tile(&self, block: &mut Block<'_>, pairs: Range<u32>) {
+    fn fill_tile(&self, block: &mut Block<'_>, pairs: Range<u32>, room: &mut Room) {
         let samples = self.image.samples;
         // The first pair may begin before the block.
         let Range { start, end } = block.dimensions;
@@ -153,8 +164,6 @@ impl BlueNoisePixel {
         // many bits as are left over from base 4, and an even number.
         let bits = samples.min(LANES.ilog2() - samples % 2);
         let lanes = 1 << bits;
-        let mut room = Aligned([[[0.0; LANES]; 2]; PAIRS]);
-        let mut side_by_side = Rows::new();
         let mut curves = [const { None }; PAIRS];
         let mut image = None;
         let (mut index, mut out) = (block.first, &mut *block.out);
@@ -165,17 +174,17 @@ impl BlueNoisePixel {
                     *place = Some(self.pair(index >> samples, pair));
                 }
             }
-            for (pair, room) in curves.iter().flatten().zip(&mut room.0) {
+            for (pair, room) in curves.iter().flatten().zip(&mut room.axes.0) {
                 pair.write(index >> bits, samples - bits, bits, room);
             }
             let place = (index % lanes) as usize;
             let now = (lanes as usize - place).min(out.len() / block.width);
             let (rows, later) = out.split_at_mut(now * block.width);
             let rows = rows.chunks_exact_mut(block.width);
-            let axes = room.0.as_flattened();
+            let axes = room.axes.0.as_flattened();
             let coordinates =
                 core::array::from_fn(|axis| &axes[(axis + skipped).min(axes.len() - 1)]);
-            side_by_side.write(coordinates, place, rows, columns.clone());
+            room.rows.write(coordinates, place, rows, columns.clone());
             index = index.wrapping_add(now as u64);
             out = later;
         }

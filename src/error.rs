@@ -25,7 +25,7 @@ pub enum Error {
         replicate: u64,
         /// The coordinates that the integrand read there.
         coordinates: Vec<f64>,
-        /// The components of what it returned.
+        /// The components of what it returned; where those are finite, times what the point weighs, which are not.
         value: Vec<f64>,
     },
     /// Every value was rejected as not finite, so that there is nothing to average.

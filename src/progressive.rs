@@ -65,10 +65,8 @@ pub trait Progressive: Estimator {
     /// The estimate that the work so far gives; `None` if there is no value yet.
     fn conclude<V: Value>(&self, state: &Self::State<V>) -> Option<Estimate<V>>;
 
-    /// How many evaluations one thread makes at a time: fewer than that for each thread leave some idle.
-    fn portion(&self) -> u64 {
-        1024
-    }
+    /// How many evaluations one thread makes at a time, at the most: fewer than that for each thread may leave some idle.
+    fn portion(&self) -> u64;
 
     /// The number of evaluations at which a test of the error is worth while, after one at `evaluations`.
     ///

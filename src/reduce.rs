@@ -4,11 +4,9 @@
 #[cfg(feature = "parallel")]
 mod threads;
 #[cfg(feature = "parallel")]
-pub(crate) use threads::number;
-#[cfg(feature = "parallel")]
 use threads::take_in_order;
 #[cfg(feature = "parallel")]
-pub(crate) use threads::{both, inside};
+pub(crate) use threads::{both, inside, number};
 
 /// Runs `job` for `0..count` and hands the results to `take` in the order of their indices.
 ///

@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use crate::evaluate::{Source, Tail, Wide, evaluate};
+use crate::evaluate::{BLOCK, Source, Tail, Wide, evaluate};
 use crate::tally::Tally;
-use crate::{Error, Estimate, Incomplete, Integrand, NonFinite, Stop, Value};
+use crate::{Error, Estimate, Incomplete, Integrand, NonFinite, Stop, Value, reduce};
 
 /// The state of the estimators that average over one or more sources of points: count, mean and spread of each.
 ///
@@ -162,6 +162,12 @@ pub(crate) fn conclude<E: Tallied, V: Value>(
     Some(Estimate { stop, ..estimate })
 }
 
+/// Where each thread has a source of its own, one evaluation; of a few sources, a block.
+pub(crate) fn portion<E: Tallied>(estimator: &E) -> u64 {
+    let sources = estimator.sources().map_or(0, |sources| sources.len());
+    if sources < reduce::number() { BLOCK } else { 1 }
+}
+
 /// Implements the public traits for an estimator that is [`Tallied`].
 macro_rules! tallied {
     ([$($generics:tt)*] $estimator:ty) => {
@@ -201,6 +207,10 @@ macro_rules! tallied {
                 state: &$crate::Tallies<V>,
             ) -> Option<$crate::Estimate<V>> {
                 $crate::tallied::conclude(self, state)
+            }
+
+            fn portion(&self) -> u64 {
+                $crate::tallied::portion(self)
             }
         }
     };

@@ -146,8 +146,6 @@ impl Strata {
         integrand: &I,
         evaluations: u64,
     ) -> Result<(), Error> {
-        /// Points that are evaluated in one go.
-        const LONGEST: u64 = 4096;
         /// Coordinates computed ahead at most, beyond those of the grid, and of how many points. The latter must not depend on
         /// what the integrand hints at, for no bit does.
         const WIDEST: u32 = 32;
@@ -212,6 +210,9 @@ impl Strata {
         apportion(&deviations, score, EVEN, count)
     }
 }
+
+/// Points that are evaluated in one go.
+const LONGEST: u64 = 4096;
 
 impl Progressive for Strata {
     type State<V: Value> = StrataState<V>;
@@ -284,6 +285,9 @@ impl Progressive for Strata {
             },
             ..together.estimate(used, rejected)
         })
+    }
+    fn portion(&self) -> u64 {
+        LONGEST
     }
 }
 

@@ -33,7 +33,7 @@ use pace::Pace;
 ///
 /// Both are asked in between, some twenty times a second, as far as the integrand allows: where that would leave threads idle, which make
 /// some [hundreds or thousands](Progressive::portion) of evaluations at a time, once a second at the least; and where one evaluation takes
-/// longer, after each. What they stop is still a
+/// longer, after each, or after a part of those that come in parts. What they stop is still a
 /// full estimate, of the evaluations made by then; which they are depends on the machine, unlike everything else
 /// in this crate.
 #[must_use]
@@ -205,11 +205,14 @@ impl<E: Progressive> Until<E> {
             } else {
                 look
             };
+            let target = target.min(budget);
             let before = clock.elapsed().as_secs_f64();
-            self.estimator.grow(state, integrand, target.min(budget))?;
+            self.estimator.grow(state, integrand, target)?;
             let seconds = clock.elapsed().as_secs_f64();
             let grown = self.estimator.used(state);
-            pace.adapt(seconds - before, grown.saturating_sub(used));
+            let (asked, made) = (target.saturating_sub(used), grown.saturating_sub(used));
+            let end = self.time.map_or(f64::INFINITY, |time| time.as_secs_f64());
+            pace.adapt(asked, made, seconds - before, end - seconds);
             let complete = grown >= budget || grown == used;
             used = grown;
             if used >= look || complete {

@@ -201,7 +201,7 @@ impl Geometry {
         }
     }
 
-    /// The boxes that rays enter, [wider](WIDER) than they are, before they meet a triangle of a mesh or a copy.
+    /// Boxes: a ray that meets a triangle of a mesh or a copy enters one of them, made [wider](WIDER).
     #[cfg(feature = "simd")]
     pub(in crate::path) fn boxes_beside(&self) -> Vec<[Vec3A; 2]> {
         let soup = self.soup.iter().flat_map(Soup::boxes);

@@ -80,6 +80,15 @@ impl<S: Simd> Index<S> {
         }
     }
 
+    /// Where it is as large as another.
+    #[inline(always)]
+    pub(in crate::path) fn ge(self, simd: S, other: u32) -> Mask<S> {
+        Mask {
+            simd,
+            lanes: simd.greater_than_or_equal_u32s(self.lanes, simd.splat_u32s(other)),
+        }
+    }
+
     #[inline(always)]
     pub(in crate::path) fn store(self, row: &mut Row<u32>) {
         S::as_mut_simd_u32s(&mut row.0).0[0] = self.lanes;

@@ -343,24 +343,24 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         packet: &Packet,
         size: [u32; 2],
         runs: &[Run<'_, P>],
-        reach: &Ahead,
+        ahead: &Ahead,
         values: &mut Vec<Vec3>,
         keeper: Option<Keeper<'_>>,
     ) {
         // Any pixel will do for all that is asked but where paths begin.
         let any = self.pixel([0; 2], size);
-        let width = |run: &Run<'_, P>| reach.width.get().min(run.share.points.dimensions());
+        let width = |run: &Run<'_, P>| ahead.width.get().min(run.share.points.dimensions());
         let rows = |run: &Run<'_, P>| run.length() * width(run) as usize;
         let length = runs.iter().map(rows).sum();
-        with_room(length, |ahead| {
-            let mut free = &mut *ahead;
+        with_room(length, |room| {
+            let mut free = &mut *room;
             for run in runs {
                 let (own, others) = free.split_at_mut(rows(run));
                 run.share.points.fill(run.indices.start, 0..width(run), own);
                 free = others;
             }
             let (mut samplers, mut pixels) = (Vec::new(), Vec::new());
-            let mut left = &*ahead;
+            let mut left = &*room;
             for run in runs {
                 let width = width(run) as usize;
                 for index in run.indices.clone() {
@@ -374,7 +374,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
             values.resize(samplers.len(), Vec3::ZERO);
             let start = |point: usize, u: &mut _| self.pixel(pixels[point], size).start(u);
             packet.radiance(self.paths, &any, &start, &mut samplers, values, keeper);
-            reach.learn(samplers.iter().map(Cursor::dimension));
+            ahead.learn(samplers.iter().map(Cursor::dimension));
         });
     }
 }
@@ -397,6 +397,9 @@ impl Ahead {
     /// computing for all.
     fn learn(&self, read: impl ExactSizeIterator<Item = u32>) {
         const MOST: usize = 64;
+        if read.len() == 0 {
+            return;
+        }
         let few = read.len() / Self::ALONE;
         let mut counts = [0; MOST + 1];
         for width in read {
@@ -440,6 +443,29 @@ mod tests {
     use crate::path::filter::{BoxFilter, Filtered};
     use crate::path::scenes;
     use crate::points::{Hammersley, Independent, Rescrambled, pixel};
+
+    #[cfg(feature = "simd")]
+    #[test]
+    fn as_many_coordinates_are_computed_as_all_but_few_paths_read() {
+        let learned = |read: &[u32]| {
+            let ahead = Ahead {
+                width: Cell::new(7),
+            };
+            ahead.learn(read.iter().copied());
+            ahead.width.get()
+        };
+        let with_long = |long: usize| {
+            let read: Vec<_> = (0..64)
+                .map(|path| if path < long { 20 } else { 6 })
+                .collect();
+            learned(&read)
+        };
+        assert_eq!([2, 3].map(with_long), [6, 20]);
+        assert_eq!(
+            [learned(&[]), learned(&[3, 9, 4]), learned(&[100])],
+            [7, 9, 64]
+        );
+    }
 
     /// Numbers of points that end within and at batches, that are none, and that are more than are followed together.
     const COUNTS: [u64; 9] = [1, 3, 512, 0, 17, 1500, 1024, 2, 600];

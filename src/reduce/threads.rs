@@ -119,5 +119,15 @@ mod tests {
             let run = run.into_inner();
             assert!(all.is_err() && run < 1000, "{run} jobs");
         }
+        let run = AtomicUsize::new(0);
+        let all = catch_unwind(AssertUnwindSafe(|| {
+            let job = |_| {
+                run.fetch_add(1, Ordering::Relaxed);
+                std::thread::sleep(core::time::Duration::from_millis(1));
+            };
+            take_in_order(0..2000, &job, &mut |()| panic!("as it should"));
+        }));
+        let run = run.into_inner();
+        assert!(all.is_err() && run < 1000, "{run} jobs");
     }
 }

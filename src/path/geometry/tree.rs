@@ -119,7 +119,7 @@ impl Tree {
         let root = &self.nodes.as_slice()[Child::ROOT.index()];
         (0..LANES)
             .map(|lane| root.corners(lane))
-            .filter(|[low, high]| low.cmple(*high).all())
+            .filter(|[low, high]| !low.cmpgt(*high).any())
     }
 
     /// The shapes of each leaf.
@@ -186,6 +186,9 @@ impl Tree {
         limit: f32,
         leaves: &mut impl Leaves,
     ) -> Option<InLeaf> {
+        if is_none(ray) {
+            return None;
+        }
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if let Some(simd) = self.simd {
             return simd.vectorize(ToNearest(InVectors {
@@ -202,6 +205,9 @@ impl Tree {
     /// Whether any leaf holds something that is met.
     #[inline]
     pub(super) fn any_in_leaves(&self, ray: &Ray, limit: f32, leaves: &mut impl Leaves) -> bool {
+        if is_none(ray) {
+            return false;
+        }
         #[cfg(all(feature = "simd", target_arch = "x86_64"))]
         if let Some(simd) = self.simd {
             return simd.vectorize(ToAny(InVectors {
@@ -339,6 +345,12 @@ impl<F: FnMut(usize, f32) -> Option<f32>> Leaves for Each<'_, F> {
     }
 }
 
+/// Whether a ray is no ray: NaN in all places tells nothing of any box, also not that nothing is in an empty one.
+#[inline(always)]
+fn is_none(ray: &Ray) -> bool {
+    ray.origin.dot(ray.direction).is_nan()
+}
+
 /// From so many boxes on, the tree is built fast.
 const SLOW: usize = 100_000;
 
@@ -417,5 +429,15 @@ mod tests {
             }
         }
         assert!(met > 1000, "{met} rays meet something");
+        let shapes = triangles(400, 1.0);
+        let tree = Tree::new(&shapes, ONE_BY_ONE);
+        for [x, y] in [[f32::NAN, 0.0], [0.0, f32::NAN]] {
+            let ray = Ray {
+                origin: Vec3A::splat(x),
+                direction: Vec3A::splat(y),
+            };
+            assert!(tree.nearest(&shapes, &ray, 1.0).is_none());
+            assert!(!tree.occluded(&shapes, &ray, 1.0));
+        }
     }
 }

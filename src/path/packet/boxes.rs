@@ -20,6 +20,10 @@ impl Boxes {
         limit: Real<S>,
     ) -> Mask<S> {
         let simd = limit.simd();
+        let nowhere = limit.lt(limit);
+        if self.0.is_empty() {
+            return nowhere;
+        }
         let (zero, one) = (limit.all(0.0), limit.all(1.0));
         let inverse = Vector {
             x: one / direction.x,
@@ -27,7 +31,7 @@ impl Boxes {
             z: one / direction.z,
         };
         // No closures: compilers do not always make them part of the function that is compiled for a machine.
-        let mut entered = zero.lt(zero);
+        let mut entered = nowhere;
         let backwards = [inverse.x.lt(zero), inverse.y.lt(zero), inverse.z.lt(zero)];
         for [low, high] in &self.0 {
             let low = (Vector::splat(simd, *low) - origin) * inverse;

@@ -164,16 +164,20 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         let hit = packet.shapes.nearest(simd, origin, direction);
         let mut met = walking & hit.distance.lt(Real::splat(simd, f32::INFINITY));
         let solids = packet.solids.as_ref().filter(|_| !PLAIN);
-        let solids = solids.map(|solids| {
+        let solids = solids.and_then(|solids| {
+            let near = walking & packet.boxes.entered(origin, direction, hit.distance);
+            let round = met & hit.shape.ge(simd, solids.first);
             let rays = Rays {
                 origin: &state.origin,
                 direction: &state.direction,
                 limit: &hit.distance.row(),
-                active: &walking.row(simd),
+                active: &(near | round).row(simd),
             };
-            let near = packet.boxes.entered(origin, direction, hit.distance);
-            let near = near.row(simd);
-            solids.nearest(self.single.geometry(), &rays, &near, &hit.shapes())
+            let nearest = || {
+                let geometry = self.single.geometry();
+                solids.nearest(geometry, &rays, &near.row(simd), &hit.shapes())
+            };
+            (near | round).any().then(nearest)
         });
         if let Some(solids) = &solids {
             met = met | solids.met(simd);

@@ -1,5 +1,6 @@
 //! Which shapes the rays of all lanes meet.
 
+mod rare;
 mod round;
 
 use glam::Vec3A;
@@ -7,8 +8,9 @@ use pulp::Simd;
 
 use crate::path::geometry::{Kind, axis};
 use crate::path::lanes::{Index, Mask, Real, Row, Vector};
-use crate::path::shape::{Cylinder, Disk, Flat, Primitive};
+use crate::path::shape::{Flat, Primitive};
 
+use rare::{Nearest, Occluded, Rare};
 use round::Ball;
 
 /// The shapes, by how simple their equations are.
@@ -18,8 +20,7 @@ pub(super) struct Shapes {
     parallelograms: Vec<Numbered>,
     triangles: Vec<Numbered>,
     balls: Vec<(u32, Ball)>,
-    disks: Vec<(u32, Disk)>,
-    cylinders: Vec<(u32, Cylinder)>,
+    rare: Rare,
 }
 
 /// A rectangle whose normal is the axis `k` and whose edges run along the axes `k + 1` and `k + 2`, modulo 3.
@@ -130,8 +131,8 @@ impl Shapes {
         match *round {
             Primitive::Flat(_) => unreachable!("flat shapes are others"),
             Primitive::Sphere(sphere) => self.balls.push((shape, Ball::new(&sphere))),
-            Primitive::Disk(disk) => self.disks.push((shape, disk)),
-            Primitive::Cylinder(cylinder) => self.cylinders.push((shape, cylinder)),
+            Primitive::Disk(disk) => self.rare.disks.push((shape, disk)),
+            Primitive::Cylinder(cylinder) => self.rare.cylinders.push((shape, cylinder)),
         }
     }
 
@@ -170,13 +171,14 @@ impl Shapes {
         for (shape, ball) in &self.balls {
             hit = hit.nearer(*shape, ball.meet(simd, origin, direction));
         }
-        for (shape, disk) in &self.disks {
-            hit = hit.nearer(*shape, disk.meet(simd, origin, direction));
+        if self.rare.is_empty() {
+            return hit;
         }
-        for (shape, cylinder) in &self.cylinders {
-            hit = hit.nearer(*shape, cylinder.meet(simd, origin, direction));
-        }
-        hit
+        simd.vectorize(Nearest {
+            rare: &self.rare,
+            rays: [origin, direction],
+            hit,
+        })
     }
 
     /// Whether any shape is nearer than `limit`, or `blocked` holds already.
@@ -212,15 +214,15 @@ impl Shapes {
             let met = ball.meet(simd, origin, direction);
             blocked = blocked | (met.inside & met.distance.lt(limit));
         }
-        for (_, disk) in &self.disks {
-            let met = disk.meet(simd, origin, direction);
-            blocked = blocked | (met.inside & met.distance.lt(limit));
+        if self.rare.is_empty() {
+            return blocked;
         }
-        for (_, cylinder) in &self.cylinders {
-            let met = cylinder.meet(simd, origin, direction);
-            blocked = blocked | (met.inside & met.distance.lt(limit));
-        }
-        blocked
+        simd.vectorize(Occluded {
+            rare: &self.rare,
+            rays: [origin, direction],
+            limit,
+            blocked,
+        })
     }
 }
 

@@ -182,8 +182,8 @@ fn copies<B: Bsdf + Clone + From<Lambertian>, E: Environment>(
     let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])?;
     let round = || -> Result<Vec<Primitive>, Error> {
         Ok(vec![
-            Disk::new([0.0, 0.4, 0.1], [0.5, 0.0, 0.1], [0.0, 0.1, -0.5])?.into(),
             Cylinder::new([-0.6, -0.6, 0.0], [0.1, 0.8, 0.2], 0.3)?.into(),
+            Disk::new([0.0, 0.4, 0.1], [0.5, 0.0, 0.1], [0.0, 0.1, -0.5])?.into(),
             Cylinder::new([0.7, -0.7, 0.3], [0.6, 0.3, 0.2], 0.2)?
                 .turned()
                 .into(),

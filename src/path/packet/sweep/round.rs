@@ -118,3 +118,107 @@ impl Cylinder {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use pulp::{Arch, WithSimd};
+
+    use super::*;
+    use crate::hash::{hash, unit_f32};
+    use crate::path::Ray;
+    use crate::path::lanes::{Row, WIDEST};
+    use crate::path::shape::Shape;
+
+    /// Some shapes, asked for a ray a lane.
+    struct Asked<'a> {
+        rays: &'a [Ray; WIDEST],
+        disk: Disk,
+        cylinder: Cylinder,
+    }
+
+    impl WithSimd for Asked<'_> {
+        type Output = [u32; 2];
+
+        /// How many of the rays meet each.
+        fn with_simd<S: Simd>(self, simd: S) -> [u32; 2] {
+            let (mut origin, mut direction) = ([Row::<f32>::ZERO; 3], [Row::<f32>::ZERO; 3]);
+            for (lane, ray) in self.rays.iter().enumerate() {
+                Row::set_vector(&mut origin, lane, ray.origin);
+                Row::set_vector(&mut direction, lane, ray.direction);
+            }
+            let (origin, direction) = (Vector::load(simd, &origin), Vector::load(simd, &direction));
+            let agree = |met: Meeting<S>, shape: &dyn Shape| {
+                let (inside, distance) = (met.inside.row(simd), met.distance.row());
+                let lanes = self.rays.iter().enumerate().take(S::F32_LANES);
+                let hits = lanes.filter(|&(lane, ray)| {
+                    let found = (inside.0[lane] > 0.0).then_some(distance.0[lane]);
+                    let expected = shape.intersect(ray, f32::INFINITY);
+                    let [found, expected] = [found, expected].map(|hit| hit.map(f32::to_bits));
+                    assert_eq!(found, expected, "{ray:?}");
+                    expected.is_some()
+                });
+                u32::try_from(hits.count()).unwrap()
+            };
+            [
+                agree(self.disk.meet(simd, origin, direction), &self.disk),
+                agree(self.cylinder.meet(simd, origin, direction), &self.cylinder),
+            ]
+        }
+    }
+
+    #[test]
+    fn every_lane_has_the_bits_of_a_single_ray() {
+        let mut met = [[0; 2]; 2];
+        for seed in 0..3000 {
+            let random = |k| unit_f32(hash(seed, k)) - 0.5;
+            let vector = |k| [random(k), random(k + 1), random(k + 2)];
+            let disk = Disk::new(vector(0), vector(3), vector(6)).unwrap();
+            let cylinder = Cylinder::new(vector(9), vector(12), 0.1 + random(15).abs()).unwrap();
+            let axis = cylinder.axes[2];
+            let rays = core::array::from_fn(|lane| {
+                let k = 20 + 6 * lane as u64;
+                let (at, way) = (Vec3A::from(vector(k)), Vec3A::from(vector(k + 3)));
+                let edge = disk.center + Vec3A::from(vector(3));
+                let (origin, direction) = match lane {
+                    // Along the axis, from it, and nearly along it.
+                    0 => (at, axis),
+                    1 => (cylinder.start, way),
+                    2 => (at, (axis + way * 1e-7).normalize()),
+                    3 => (at, axis + cylinder.axes[0] * 1e-30),
+                    // To the rims, within the rounding of either side.
+                    4 => (at, cylinder.start + cylinder.axes[0] * cylinder.radius - at),
+                    5 => (at, edge - at),
+                    // In the plane of the disk.
+                    6 => (disk.center, disk.first_dual),
+                    7 => (at, Vec3A::NEG_Y),
+                    8 => (at, Vec3A::ZERO),
+                    9 => (at, Vec3A::NAN),
+                    // From a point of the cylinder, into it or away.
+                    10 => (cylinder.start + cylinder.axes[1] * cylinder.radius, way),
+                    _ => (at, way),
+                };
+                Ray {
+                    origin,
+                    direction: if lane == 3 {
+                        direction
+                    } else {
+                        direction / direction.length()
+                    },
+                }
+            });
+            let asked = || Asked {
+                rays: &rays,
+                disk,
+                cylinder,
+            };
+            for (met, more) in met.iter_mut().zip([
+                Arch::new().dispatch(asked()),
+                asked().with_simd(pulp::Scalar),
+            ]) {
+                *met = [met[0] + more[0], met[1] + more[1]];
+            }
+        }
+        let [[disks, cylinders], [alone, _]] = met;
+        assert!(disks > 2000 && cylinders > 2000 && alone > 20, "{met:?}");
+    }
+}

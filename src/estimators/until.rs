@@ -32,7 +32,7 @@ use pace::Pace;
 /// # Time and callback
 ///
 /// Both are asked in between, some twenty times a second, as far as the integrand allows: where that would leave threads idle, which make
-/// some [hundreds or thousands](Progressive::portion) of evaluations at a time, once a second at the least; and where one evaluation takes
+/// [so many](Progressive::portion) evaluations at a time, once a second at the least; and where one evaluation takes
 /// longer, after each, or after a part of those that come in parts. What they stop is still a
 /// full estimate, of the evaluations made by then; which they are depends on the machine, unlike everything else
 /// in this crate.
@@ -188,7 +188,8 @@ impl<E: Progressive> Until<E> {
         let tolerant = self.absolute > 0.0 || self.relative > 0.0;
         let asking = self.time.is_some() || self.watch.is_some();
         let mut used = self.estimator.used(state);
-        let mut pace = Pace::new(self.estimator.portion(), reduce::number());
+        // Portions are not always found out at once.
+        let mut pace = asking.then(|| Pace::new(self.estimator.portion(), reduce::number()));
         let mut look = if tolerant { self.least } else { budget };
         while look <= used {
             if tolerant && self.reached(state) {
@@ -200,19 +201,20 @@ impl<E: Progressive> Until<E> {
             look = self.estimator.next_look(look).max(look + 1);
         }
         loop {
-            let target = if asking {
-                look.min(used.saturating_add(pace.stride))
-            } else {
-                look
+            let target = match &pace {
+                Some(pace) => look.min(used.saturating_add(pace.stride)),
+                None => look,
             };
             let target = target.min(budget);
             let before = clock.elapsed().as_secs_f64();
             self.estimator.grow(state, integrand, target)?;
             let seconds = clock.elapsed().as_secs_f64();
             let grown = self.estimator.used(state);
-            let (asked, made) = (target.saturating_sub(used), grown.saturating_sub(used));
-            let end = self.time.map_or(f64::INFINITY, |time| time.as_secs_f64());
-            pace.adapt(asked, made, seconds - before, end - seconds);
+            if let Some(pace) = &mut pace {
+                let (asked, made) = (target.saturating_sub(used), grown.saturating_sub(used));
+                let end = self.time.map_or(f64::INFINITY, |time| time.as_secs_f64());
+                pace.adapt(asked, made, seconds - before, end - seconds);
+            }
             let complete = grown >= budget || grown == used;
             used = grown;
             if used >= look || complete {

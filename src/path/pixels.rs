@@ -1,5 +1,7 @@
 //! The means of several pixels at once.
 
+mod ahead;
+
 use super::View;
 use super::bsdf::Bsdf;
 use super::filter::Filter;
@@ -9,8 +11,10 @@ use super::sensor::Sensor;
 use crate::points::{PointSet, Skipped};
 use crate::recorder::Recorder;
 use crate::{Average, Estimator, Integrand, NonFinite, Outcome};
-use core::cell::Cell;
 use glam::Vec3;
+
+pub(in crate::path) use ahead::Ahead;
+
 #[cfg(feature = "simd")]
 use {
     super::packet::{Keeper, Packet},
@@ -197,9 +201,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
 
     /// Before any path is followed.
     pub(in crate::path) fn ahead(&self, size: [u32; 2]) -> Ahead {
-        Ahead {
-            width: Cell::new(self.pixel([0; 2], size).dimensions()),
-        }
+        Ahead::new(self.pixel([0; 2], size).dimensions())
     }
 
     /// Follows the paths of some runs, and shares the light of some groups.
@@ -349,7 +351,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     ) {
         // Any pixel will do for all that is asked but where paths begin.
         let any = self.pixel([0; 2], size);
-        let width = |run: &Run<'_, P>| ahead.width.get().min(run.share.points.dimensions());
+        let width = |run: &Run<'_, P>| ahead.width().min(run.share.points.dimensions());
         let rows = |run: &Run<'_, P>| run.length() * width(run) as usize;
         let length = runs.iter().map(rows).sum();
         with_room(length, |room| {
@@ -376,42 +378,6 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
             packet.radiance(self.paths, &any, &start, &mut samplers, values, keeper);
             ahead.learn(samplers.iter().map(Cursor::dimension));
         });
-    }
-}
-
-/// How many coordinates are computed ahead of paths: no result depends on it.
-pub(in crate::path) struct Ahead {
-    #[cfg_attr(
-        not(feature = "simd"),
-        expect(dead_code, reason = "paths go one after the other")
-    )]
-    width: Cell<u32>,
-}
-
-#[cfg(feature = "simd")]
-impl Ahead {
-    /// A coordinate alone takes as long as so many of those that are computed together, about.
-    const ALONE: usize = 32;
-
-    /// For the next paths, as many as those that were followed just now should have had: what so few of them have `read` is not worth
-    /// computing for all.
-    fn learn(&self, read: impl ExactSizeIterator<Item = u32>) {
-        const MOST: usize = 64;
-        if read.len() == 0 {
-            return;
-        }
-        let few = read.len() / Self::ALONE;
-        let mut counts = [0; MOST + 1];
-        for width in read {
-            counts[MOST.min(width as usize)] += 1;
-        }
-        let mut longer = 0;
-        let shorter = counts.iter().rposition(|count| {
-            longer += count;
-            longer > few
-        });
-        #[expect(clippy::cast_possible_truncation, reason = "at most 64")]
-        self.width.set(shorter.unwrap_or(0) as u32);
     }
 }
 
@@ -443,29 +409,6 @@ mod tests {
     use crate::path::filter::{BoxFilter, Filtered};
     use crate::path::scenes;
     use crate::points::{Hammersley, Independent, Rescrambled, pixel};
-
-    #[cfg(feature = "simd")]
-    #[test]
-    fn as_many_coordinates_are_computed_as_all_but_few_paths_read() {
-        let learned = |read: &[u32]| {
-            let ahead = Ahead {
-                width: Cell::new(7),
-            };
-            ahead.learn(read.iter().copied());
-            ahead.width.get()
-        };
-        let with_long = |long: usize| {
-            let read: Vec<_> = (0..64)
-                .map(|path| if path < long { 20 } else { 6 })
-                .collect();
-            learned(&read)
-        };
-        assert_eq!([2, 3].map(with_long), [6, 20]);
-        assert_eq!(
-            [learned(&[]), learned(&[3, 9, 4]), learned(&[100])],
-            [7, 9, 64]
-        );
-    }
 
     /// Numbers of points that end within and at batches, that are none, and that are more than are followed together.
     const COUNTS: [u64; 9] = [1, 3, 512, 0, 17, 1500, 1024, 2, 600];

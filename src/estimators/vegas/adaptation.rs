@@ -185,7 +185,7 @@ impl<V: Value> Adaptation<V> {
 
 /// The longest part of an iteration of `count` points: each has its own sums for every bin, so that it is not to be short.
 pub(super) fn longest_part(count: u64) -> u64 {
-    (count / 16).clamp(4096, 16_384)
+    (count / 16).clamp(4096, 16_384).next_power_of_two()
 }
 
 /// How many of `count` points look for the scale.

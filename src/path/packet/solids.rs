@@ -238,7 +238,7 @@ impl Packet {
     ) -> Mask<S> {
         let simd = limit.simd();
         let visible = !between.occluded(start, into, limit, !active);
-        if PLAIN || self.boxes.0.is_empty() {
+        if PLAIN {
             return visible;
         }
         let near = visible & self.boxes.entered(start, into, limit);

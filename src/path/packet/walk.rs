@@ -167,17 +167,17 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         let solids = solids.and_then(|solids| {
             let near = walking & packet.boxes.entered(origin, direction, hit.distance);
             let round = met & hit.shape.ge(simd, solids.first);
+            if !(near | round).any() {
+                return None;
+            }
             let rays = Rays {
                 origin: &state.origin,
                 direction: &state.direction,
                 limit: &hit.distance.row(),
                 active: &(near | round).row(simd),
             };
-            let nearest = || {
-                let geometry = self.single.geometry();
-                solids.nearest(geometry, &rays, &near.row(simd), &hit.shapes())
-            };
-            (near | round).any().then(nearest)
+            let geometry = self.single.geometry();
+            Some(solids.nearest(geometry, &rays, &near.row(simd), &hit.shapes()))
         });
         if let Some(solids) = &solids {
             met = met | solids.met(simd);

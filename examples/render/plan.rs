@@ -12,8 +12,8 @@ use crate::points::Points;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Plan {
     passes: Passes,
-    /// Whether passes go on with the points of those before.
-    pub(crate) goes_on: bool,
+    /// How many points there are in the one set that the passes are parts of, if they are; of a sequence it may be any number.
+    pub(crate) one_set: Option<u64>,
     /// Whether every pass is to tell of the errors of pixels.
     independent: bool,
     /// How many samples every pixel gets before the others are dealt, if they are.
@@ -82,10 +82,12 @@ impl Plan {
     ) -> Result<Self, String> {
         // Errors of pixels are those of independent sets.
         let independent = arguments.std_error.is_some() || arguments.replicates.is_some();
-        let goes_on = points.go_on() && !independent;
+        let spp = arguments.spp.unwrap_or(of_the_file);
+        let known = arguments.time.is_none() && arguments.noise.is_none();
+        let goes_on = points.go_on(known.then_some(spp)) && !independent;
         let plan = |passes, first| Self {
             passes,
-            goes_on,
+            one_set: goes_on.then_some(spp),
             independent,
             first: arguments.adaptive.then_some(first),
         };
@@ -96,7 +98,6 @@ impl Plan {
         if let Some(noise) = arguments.noise {
             return Ok(plan(Passes::Noise(noise), FIRST));
         }
-        let spp = arguments.spp.unwrap_or(of_the_file);
         // An eighth; a power of two, for nets.
         let first = 1 << (spp / 8).clamp(2, MOST_OF_FIRST).ilog2();
         if arguments.adaptive && spp < first {
@@ -254,10 +255,11 @@ mod tests {
                         continue;
                     }
                     let plan = plan(&[&["--spp", &text], more].concat(), points);
-                    let (first, goes_on) = (plan.first, plan.goes_on);
+                    let (first, goes_on) = (plan.first, plan.one_set.is_some());
+                    assert!(plan.one_set.is_none_or(|all| all == spp));
                     assert_eq!(
                         goes_on,
-                        points.go_on()
+                        points.go_on(Some(spp))
                             && !more.contains(&"--replicates")
                             && !more.contains(&"--std-error")
                     );
@@ -313,7 +315,7 @@ mod tests {
         }
         assert_eq!(done, 1000);
         let plan = self::plan(&["--time", "10", "--std-error", "x.exr"], Points::Sobol);
-        assert!(!plan.goes_on && !plan.tells_by_halves());
+        assert!(plan.one_set.is_none() && !plan.tells_by_halves());
         let plan = self::plan(&["--time", "10", "--adaptive"], Points::Rescrambled);
         // A cut pass is not to lead past the first samples.
         let pass = plan.next(4, 9, 5.0, None).unwrap();
@@ -321,7 +323,7 @@ mod tests {
         assert_eq!(plan.next(4, 15, 5.0, None).unwrap().samples, 15..16);
         assert_eq!(plan.next(4, 16, 5.0, None).unwrap().samples, 16..32);
         let plan = self::plan(&["--time", "10", "--adaptive"], Points::NRooks);
-        assert!(!plan.goes_on && plan.tells_by_halves());
+        assert!(plan.one_set.is_none() && plan.tells_by_halves());
         assert_eq!(plan.first, Some(FIRST));
     }
 }

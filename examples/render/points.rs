@@ -52,16 +52,15 @@ impl Points {
         self == Self::BlueNoise
     }
 
-    /// Whether they are a sequence that any number of points can be taken of, some now and some later. Of blue noise parts would do too, but
-    /// take longer than sets of their own, and are less even.
-    pub(crate) fn go_on(self) -> bool {
+    /// Whether some of `count` points can be taken now and the others later, with errors that the parts tell of. Any number can be taken of a
+    /// sequence. Of the sets of a number of points blue noise alone has parts that are nearly as even.
+    pub(crate) fn go_on(self, count: Option<u64>) -> bool {
         match self {
             Self::Sobol | Self::Rescrambled | Self::Halton | Self::Independent => true,
-            Self::BlueNoise
-            | Self::Hammersley
-            | Self::MultiJittered
-            | Self::Stratified
-            | Self::NRooks => false,
+            Self::BlueNoise => {
+                count.is_some_and(|count| count.is_power_of_two() && count <= 1 << 32)
+            }
+            Self::Hammersley | Self::MultiJittered | Self::Stratified | Self::NRooks => false,
         }
     }
 
@@ -90,7 +89,7 @@ impl Points {
         })
     }
 
-    /// The points from the beginning of a part of them on.
+    /// A part of about `count` points, and what comes after it.
     pub(crate) fn of_part(
         self,
         position: [u32; 2],
@@ -99,8 +98,9 @@ impl Points {
         part: Range<u64>,
     ) -> Result<Box<dyn PointSet>, Error> {
         let points = self.of_pixel(position, seed, count)?;
+        let whole = points.size().is_none_or(|size| size <= part.end);
         Ok(match part.start {
-            0 => points,
+            0 if whole => points,
             skip => Box::new(Skipped::new(points, skip)),
         })
     }
@@ -112,14 +112,15 @@ mod tests {
 
     #[test]
     fn parts_are_those_of_the_whole() {
-        let sequences = Points::value_variants()
+        let in_parts = Points::value_variants()
             .iter()
-            .filter(|points| points.go_on());
-        for &points in sequences {
-            let whole = points.of_pixel([3, 4], 5, 64).unwrap();
-            for part in [0..64, 0..32, 32..64, 64..128] {
-                let some = points.of_part([3, 4], 5, 64, part.clone()).unwrap();
-                assert_eq!(some.size(), None, "{points} {part:?}");
+            .filter(|points| points.go_on(Some(128)));
+        for &points in in_parts {
+            let whole = points.of_pixel([3, 4], 5, 128).unwrap();
+            for part in [0..128, 0..64, 64..128] {
+                let some = points.of_part([3, 4], 5, 128, part.clone()).unwrap();
+                let all = part == (0..128) && points == Points::BlueNoise;
+                assert_eq!(some.size(), all.then_some(128), "{points} {part:?}");
                 for index in 0..3 {
                     let [one, other] = [
                         some.coordinate(index, 7),

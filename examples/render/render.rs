@@ -110,12 +110,12 @@ impl Job<'_> {
             return Ok(Counts::Same(mean));
         };
         // Sets of their own have any numbers: only all of them together have those that are dealt.
-        let radix = match self.plan.goes_on {
-            true => {
-                let some = self.points.of_pixel([0, 0], self.seed, mean);
+        let radix = match self.plan.one_set {
+            Some(all) => {
+                let some = self.points.of_pixel([0, 0], self.seed, all);
                 some.map_err(|e| e.to_string())?.radix()
             }
-            false => None,
+            None => None,
         };
         Ok(Counts::Each(match radix {
             Some(radix) => allocation.powers(mean, radix),
@@ -143,9 +143,9 @@ impl Job<'_> {
         }
         let y = u32::try_from(y).map_err(|e| e.to_string())?;
         // One set for all passes, or one for each.
-        let set = match self.plan.goes_on {
-            true => 0,
-            false => pass.number,
+        let set = match self.plan.one_set {
+            Some(_) => 0,
+            None => pass.number,
         };
         let seed = hash::hash(self.seed, set);
         let width = self.size[0] as usize;
@@ -172,11 +172,10 @@ impl Job<'_> {
                 if count > 0 {
                     #[expect(clippy::cast_possible_truncation, reason = "the width is a u32")]
                     let position = [x as u32, y];
-                    let part = match self.plan.goes_on {
-                        true => before[x]..end,
-                        false => 0..count,
+                    let points = match self.plan.one_set {
+                        Some(all) => self.points.of_part(position, seed, all, before[x]..end),
+                        None => self.points.of_pixel(position, seed, count),
                     };
-                    let points = self.points.of_part(position, seed, count, part);
                     some.push((position, points.map_err(|e| e.to_string())?, count));
                     let cut = pass.cut(before[x]..end);
                     let samples = [cut, count - cut];

@@ -10,7 +10,7 @@ mod parts;
 mod together;
 mod walk;
 
-pub(crate) use apportion::{apportion, evenly};
+pub(crate) use apportion::{apportion, counts, evenly};
 pub(crate) use together::Stratified;
 pub(crate) use walk::{Look, Rows, Run, Visitor, Walk};
 
@@ -86,6 +86,7 @@ pub(crate) struct Visited<V> {
 }
 
 impl<V: Value> Visited<V> {
+    /// None of these.
     pub(crate) fn new(strata: usize) -> Self {
         Self {
             strata: vec![Stratum::EMPTY; strata],
@@ -95,6 +96,14 @@ impl<V: Value> Visited<V> {
         }
     }
 
+    /// None, and the room that all have taken.
+    pub(crate) fn clear(&mut self) {
+        self.strata.clear();
+        self.left_out.clear();
+        (self.parts, self.before) = (0, None);
+    }
+
+    /// All, once they were visited; of those that were not some may be missing at the end.
     pub(crate) fn strata(&self) -> &[Stratum<V>] {
         &self.strata
     }

@@ -3,7 +3,7 @@
 use crate::evaluate::Wide;
 use crate::points::Independent;
 use crate::progressive::at_once;
-use crate::stratum::{Rows, Stratified, Visited, Walk, apportion, evenly};
+use crate::stratum::{Rows, Stratified, Visited, Walk, apportion, counts, evenly};
 use crate::{
     Error, Estimate, Estimator, Integrand, NonFinite, Outcome, Progressive, Stop, Value, hash,
 };
@@ -184,7 +184,7 @@ impl Strata {
         Ok(())
     }
 
-    /// Points in proportion to the standard deviations, two a cell at least, no more than `count` in all.
+    /// Points in proportion to the standard deviations, two a cell at least, no more than `count` in all: their numbers up to and with each cell.
     fn allocate<V: Value>(&self, pilot: &Visited<V>, count: u64) -> Vec<u64> {
         let deviations: Vec<V> = pilot
             .strata()
@@ -251,7 +251,7 @@ impl Progressive for Strata {
         }
         let each = self.pilot();
         let spent = each * self.strata as u64;
-        let counts = if self.neyman {
+        let ends = if self.neyman {
             let counts = vec![each; self.strata];
             let seed = hash::hash(!self.seed, 0);
             self.go_on(pilot, counts, seed, integrand, evaluations)?;
@@ -262,7 +262,13 @@ impl Progressive for Strata {
         } else {
             evenly(self.strata, self.count)
         };
-        self.go_on(main, counts, self.seed, integrand, evaluations - spent)
+        self.go_on(
+            main,
+            counts(&ends),
+            self.seed,
+            integrand,
+            evaluations - spent,
+        )
     }
 
     fn conclude<V: Value>(&self, state: &StrataState<V>) -> Option<Estimate<V>> {

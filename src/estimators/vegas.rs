@@ -256,6 +256,7 @@ impl Vegas {
             let seed = hash::hash(self.seed, u64::MAX);
             [*looked, *rejected] = adaptation.look(integrand, seed, self.each(), policy)?;
         }
+        let mut room = None;
         let mut whole = *looked + iterations.iter().map(|one| one.used).sum::<u64>();
         while iterations.len() < self.iterations as usize {
             // The first points of all come with those that looked, so that there is always an estimate.
@@ -265,7 +266,10 @@ impl Vegas {
                 break;
             }
             let seed = hash::hash(self.seed, iterations.len() as u64);
-            let pass = open.get_or_insert_with(|| adaptation.begin());
+            let pass = open.get_or_insert_with(|| match room.take() {
+                Some(room) => Pass::cleared(room),
+                None => adaptation.begin(),
+            });
             // Only the first is part of an estimate before it is complete.
             let order = if iterations.is_empty() {
                 Order::Random
@@ -295,7 +299,7 @@ impl Vegas {
             // learn.
             let settled = iterations.len().saturating_sub(self.training()) + 2;
             adaptation.learn(pass, alone.size, self.damping / settled as f64, self.each());
-            *open = None;
+            room = open.take();
         }
         Ok(())
     }

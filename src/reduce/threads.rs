@@ -3,22 +3,57 @@
 //! Work and jobs are behind pointers, so that what runs them is compiled once, not for every integrand.
 
 use core::ops::Range;
+use core::time::Duration;
 use std::sync::{
-    Mutex, MutexGuard,
-    atomic::{AtomicUsize, Ordering},
+    Arc, Mutex, MutexGuard,
+    atomic::{AtomicBool, AtomicUsize, Ordering},
 };
+use std::time::Instant;
 
 /// How many jobs can run at a time.
 pub(crate) fn number() -> usize {
     rayon::current_num_threads()
 }
 
-/// Runs `work` on a thread of the pool, so that the loops in it need not change threads each; here, if there is one thread only.
+/// Runs `work` on a thread of the pool, so that the loops in it need not change threads each; here, if there is one thread only. The
+/// other threads stay awake between the loops.
 pub(crate) fn inside(work: &mut (dyn FnMut() + Send)) {
     if number() == 1 {
         return work();
     }
-    rayon::scope(|_| work());
+    rayon::scope(|_| {
+        let over = Over::default();
+        for _ in 1..number() {
+            let over = Arc::clone(&over.0);
+            // Nobody waits for its end, which may be that of a long job.
+            rayon::spawn(move || stay(&over));
+        }
+        work();
+    });
+}
+
+/// Runs what there is to do in the pool until it is `over`, or until there has been nothing for a while. A thread that sleeps takes some 60
+/// us to wake, which is as long as much of what one thread does between two loops.
+fn stay(over: &AtomicBool) {
+    const WHILE: Duration = Duration::from_millis(1);
+    let mut idle = Instant::now();
+    while !over.load(Ordering::Relaxed) && idle.elapsed() < WHILE {
+        match rayon::yield_now() {
+            Some(rayon::Yield::Executed) => idle = Instant::now(),
+            // Other programs may have something to do.
+            _ => std::thread::yield_now(),
+        }
+    }
+}
+
+/// Says that something is over when it is dropped, by a panic too.
+#[derive(Default)]
+struct Over(Arc<AtomicBool>);
+
+impl Drop for Over {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
 }
 
 /// The values of two jobs that know nothing of each other: while one has nothing to share out, there is the other.

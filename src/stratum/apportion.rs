@@ -1,12 +1,13 @@
 //! How points are shared out among strata.
 
+use core::convert::Infallible;
 use core::iter;
 
 use crate::reduce;
 
 /// Shares `count` points out, two to each of the `strata` at the least: of the others the part `even` goes to all alike, the
 /// rest in proportion to their scores. The rounding is carried on from one to the next, so that none are lost; scores
-/// that are all zero share evenly.
+/// that are all zero share evenly. The numbers of points up to and with each stratum.
 ///
 /// There must be two points for each.
 pub(crate) fn apportion<S: Sync>(
@@ -37,27 +38,45 @@ pub(crate) fn apportion<S: Sync>(
     if let Some(end) = bounds.last_mut() {
         *end = 1.0;
     }
-    reduce::at_each(&scores, |place, block| {
-        let mut share = bounds[place];
+    let before = scores.iter().scan(0, |strata, block| {
+        let before = *strata;
+        *strata += block.each.len() as u64;
+        Some(before)
+    });
+    let before: Vec<u64> = before.collect();
+    let job = |place: u64| {
+        let place = usize::try_from(place).expect("below a length");
+        let (block, mut share) = (&scores[place], bounds[place]);
         let [mut given, last] = [share, bounds[place + 1]].map(|share| nearest(share, free));
-        let mut counts: Vec<u64> = block
-            .each
-            .iter()
-            .map(|&score| {
-                share += part(score, 1.0);
-                let end = nearest(share, free).clamp(given, last);
-                let here = end - given;
-                given = end;
-                2 + here
-            })
-            .collect();
+        let two_each = (before[place] + 1..).map(|strata| 2 * strata);
+        let ends = block.each.iter().zip(two_each).map(|(&score, two_each)| {
+            share += part(score, 1.0);
+            given = nearest(share, free).clamp(given, last);
+            two_each + given
+        });
+        let mut ends: Vec<u64> = ends.collect();
         // Up to where the next block begins, even if the sum over this one was rounded to a little less.
-        if let Some(count) = counts.last_mut() {
-            *count += last - given;
+        if let Some(end) = ends.last_mut() {
+            *end += last - given;
         }
-        counts
-    })
-    .concat()
+        ends
+    };
+    let mut all = Vec::with_capacity(strata.len());
+    let taken: Result<(), Infallible> = reduce::in_order(scores.len() as u64, job, |ends| {
+        all.extend(ends);
+        Ok(())
+    });
+    let Ok(()) = taken;
+    all
+}
+
+/// How many points each stratum has, if these are their numbers up to and with each.
+pub(crate) fn counts(ends: &[u64]) -> Vec<u64> {
+    let before = iter::once(&0).chain(ends);
+    ends.iter()
+        .zip(before)
+        .map(|(end, before)| end - before)
+        .collect()
 }
 
 /// Shares `count` points out among so many strata, all of them alike.
@@ -91,13 +110,15 @@ mod tests {
 
     #[test]
     fn points_are_shared_out_to_the_last() {
-        let by = |scores: &[f64], count| apportion(scores, |score| *score, 0.0, count);
+        let apportion =
+            |scores: &[f64], even, count| counts(&apportion(scores, |score| *score, even, count));
+        let by = |scores: &[f64], count| apportion(scores, 0.0, count);
         assert_eq!(by(&[1.0, 1.0, 1.0], 10), [3, 4, 3]);
         assert_eq!(by(&[0.0, 0.0], 5), [3, 2]);
         assert_eq!(by(&[0.0, 3.0, 1.0], 14), [2, 8, 4]);
         assert_eq!(by(&[f64::INFINITY, 1.0], 4), [2, 2]);
-        assert_eq!(apportion(&[0.0, 2.0], |score| *score, 0.5, 104), [27, 77]);
-        assert_eq!(evenly(1000, 12_345).iter().sum::<u64>(), 12_345);
+        assert_eq!(apportion(&[0.0, 2.0], 0.5, 104), [27, 77]);
+        assert_eq!(evenly(1000, 12_345).last(), Some(&12_345));
         let scores: Vec<f64> = (1..10_000).map(|k| 1.0 / f64::from(k)).collect();
         let blocks = by(&scores, 1 << 40);
         assert_eq!(blocks.iter().sum::<u64>(), 1 << 40);

@@ -1,6 +1,7 @@
 //! From stratum to stratum, and what is evaluated on the way.
 
 use core::ops::Range;
+use std::borrow::Cow;
 
 use super::{Stratum, Visited};
 use crate::points::{Independent, PointSet, permuted};
@@ -8,10 +9,10 @@ use crate::room::with_room;
 use crate::{Cursor, Error, NonFinite, Value, reduce};
 
 /// So many points in each stratum, one stratum after the other, in parts that can be evaluated side by side.
-pub(crate) struct Walk {
+pub(crate) struct Walk<'a> {
     order: Order,
     /// The numbers of points up to and with each visit.
-    ends: Vec<u64>,
+    ends: Cow<'a, [u64]>,
     /// Points in a part at most, a power of two.
     longest: u64,
 }
@@ -28,7 +29,7 @@ enum Order {
 /// Points in the shortest part.
 const SHORTEST: u64 = 256;
 
-impl Walk {
+impl<'a> Walk<'a> {
     /// `counts[k]` points in stratum `k`; no part is longer than `longest`, rounded up to a power of two.
     ///
     /// The order of the strata is random, one that `key` selects. So those that were visited first are a random sample of all,
@@ -36,15 +37,22 @@ impl Walk {
     pub(crate) fn shuffled(counts: &[u64], key: u64, longest: u64) -> Self {
         let order = permuted(counts.len() as u64, key);
         let counts_in_order = order.iter().map(|&stratum| counts[stratum as usize]);
-        Self::new(sums(counts_in_order), Order::Shuffled(order), longest)
+        let ends: Vec<u64> = counts_in_order
+            .scan(0, |sum, count| {
+                *sum += count;
+                Some(*sum)
+            })
+            .collect();
+        Self::new(ends.into(), Order::Shuffled(order), longest)
     }
 
-    /// The same with strata in the order of their numbers: less to do where nothing is said before the walk is complete.
-    pub(crate) fn in_turn(counts: &[u64], longest: u64) -> Self {
-        Self::new(sums(counts.iter().copied()), Order::InTurn, longest)
+    /// The same with strata in the order of their numbers: less to do where nothing is said before the walk is complete. `ends` are the
+    /// numbers of points up to and with each stratum.
+    pub(crate) fn in_turn(ends: &'a [u64], longest: u64) -> Self {
+        Self::new(ends.into(), Order::InTurn, longest)
     }
 
-    fn new(ends: Vec<u64>, order: Order, longest: u64) -> Self {
+    fn new(ends: Cow<'a, [u64]>, order: Order, longest: u64) -> Self {
         Self {
             order,
             ends,
@@ -131,6 +139,12 @@ impl Walk {
         job: impl Fn(Range<u64>) -> (Part<V>, T) + Sync,
         mut take: impl FnMut(T) + Send,
     ) -> Result<(), Error> {
+        if matches!(self.order, Order::Shuffled(_)) {
+            visited.strata.resize(self.ends.len(), Stratum::EMPTY);
+        } else {
+            let more = self.ends.len().saturating_sub(visited.strata.len());
+            visited.strata.reserve_exact(more);
+        }
         let begun = visited.parts;
         let jobs = self.parts(count).saturating_sub(begun);
         reduce::in_order(
@@ -157,7 +171,11 @@ impl Walk {
 
     fn merge<V: Value>(&self, visited: &mut Visited<V>, given: Given<V>) {
         for (visit, stratum) in (given.first..).zip(&given.strata) {
-            visited.strata[self.stratum(visit)].merge(stratum);
+            match visited.strata.get_mut(self.stratum(visit)) {
+                Some(place) => place.merge(stratum),
+                // Those that are visited in turn come one after the other.
+                None => visited.strata.push(*stratum),
+            }
         }
         for (visit, weight) in given.left_out {
             let stratum = self.stratum(visit);
@@ -245,16 +263,6 @@ impl Walk {
         }
         visit
     }
-}
-
-/// The sums up to and with each number.
-fn sums(numbers: impl Iterator<Item = u64>) -> Vec<u64> {
-    numbers
-        .scan(0, |sum, number| {
-            *sum += number;
-            Some(*sum)
-        })
-        .collect()
 }
 
 /// Points of a batch that are in one stratum, one after the other.
@@ -408,7 +416,7 @@ mod tests {
         for longest in [256, 1024, 16_384] {
             let walks = [
                 Walk::shuffled(&counts, 7, longest),
-                Walk::in_turn(&counts, longest),
+                Walk::in_turn(&[70_000, 70_002, 70_005], longest),
             ];
             let [growing, shrinking] = walks.each_ref().map(|walk| {
                 let parts = walk.number();

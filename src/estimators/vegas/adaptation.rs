@@ -7,7 +7,7 @@ use crate::evaluate::Wide;
 use crate::integrands::ImportanceMap;
 use crate::points::{Independent, PointSet};
 use crate::recorder::Recorder;
-use crate::stratum::{Rows, Stratum, Visited, Walk, apportion};
+use crate::stratum::{Rows, Stratum, Visited, Walk, apportion, counts};
 use crate::{Error, Integrand, NonFinite, Value, hash, reduce};
 
 /// What is adapted from iteration to iteration.
@@ -16,7 +16,8 @@ use crate::{Error, Integrand, NonFinite, Value, hash, reduce};
 pub(super) struct Adaptation<V> {
     pub(super) map: ImportanceMap,
     pub(super) strata: Grid,
-    counts: Vec<u64>,
+    /// The numbers of points up to and with each stratum.
+    ends: Vec<u64>,
     /// The largest absolute values seen, per component: all components train the map on the same scale.
     pub(super) scale: V,
 }
@@ -44,6 +45,13 @@ impl<V: Value> Pass<V> {
     pub(super) fn used(&self) -> u64 {
         self.visited.used()
     }
+
+    /// Another iteration with no points yet, in the same room.
+    pub(super) fn cleared(mut self) -> Self {
+        self.visited.clear();
+        self.squares.fill(Squares::default());
+        self
+    }
 }
 
 impl<V: Value> Adaptation<V> {
@@ -53,7 +61,7 @@ impl<V: Value> Adaptation<V> {
         let strata = Grid::new(map.dimensions(), count, map.bins());
         Self {
             map,
-            counts: strata.evenly(count - looks(count)),
+            ends: strata.evenly(count - looks(count)),
             strata,
             scale: V::ZERO,
         }
@@ -61,13 +69,13 @@ impl<V: Value> Adaptation<V> {
 
     /// How many points the next iteration has.
     pub(super) fn points(&self) -> u64 {
-        self.counts.iter().sum()
+        self.ends.last().copied().unwrap_or(0)
     }
 
     /// An iteration with no points yet.
     pub(super) fn begin(&self) -> Pass<V> {
         Pass {
-            visited: Visited::new(self.counts.len()),
+            visited: Visited::new(0),
             squares: vec![Squares::default(); self.map.bins() * self.map.dimensions()],
         }
     }
@@ -125,8 +133,8 @@ impl<V: Value> Adaptation<V> {
         const ROWS: usize = 256;
         let longest = longest_part(self.points());
         let walk = match order {
-            Order::Random => Walk::shuffled(&self.counts, seed, longest),
-            Order::Number => Walk::in_turn(&self.counts, longest),
+            Order::Random => Walk::shuffled(&counts(&self.ends), seed, longest),
+            Order::Number => Walk::in_turn(&self.ends, longest),
         };
         let bins = self.map.table();
         let dimensions = self.map.dimensions();
@@ -172,7 +180,7 @@ impl<V: Value> Adaptation<V> {
             root * root.sqrt()
         };
         let bins = self.map.bins();
-        (self.map, self.counts) = reduce::both(
+        (self.map, self.ends) = reduce::both(
             || {
                 let weights: Vec<_> = pass.squares.chunks_exact(bins).map(means).collect();
                 self.map.refined(&weights, damping)

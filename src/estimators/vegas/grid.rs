@@ -39,6 +39,7 @@ impl Grid {
         }
     }
 
+    /// As many points in each, `count` in all: their numbers up to and with each stratum.
     pub(super) fn evenly(&self, count: u64) -> Vec<u64> {
         stratum::evenly(self.strata, count)
     }

@@ -74,6 +74,26 @@ impl Frame {
     }
 }
 
+/// [`f32::floor`], in a few instructions: without those that round, as on the least of x86-64, that is a call of a function.
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "of numbers that have a fraction"
+)]
+pub(in crate::path) fn floor(number: f32) -> f32 {
+    // From here on numbers are whole.
+    const WHOLE: f32 = (1 << 23) as f32;
+    if !(number.abs() < WHOLE) {
+        return number;
+    }
+    let toward_zero = number as i32 as f32;
+    if toward_zero > number {
+        toward_zero - 1.0
+    } else {
+        toward_zero
+    }
+}
+
 /// A coordinate in `f32`, truncated where it would round to 1.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
@@ -101,7 +121,7 @@ fn eighth(angle: f32) -> [f32; 2] {
 #[inline]
 pub(in crate::path) fn turn(u: f32) -> [f32; 2] {
     let quarters = 4.0 * u;
-    let nearest = (quarters + 0.5).floor();
+    let nearest = floor(quarters + 0.5);
     let [cosine, sine] = eighth((quarters - nearest) * (2.0 * FRAC_PI_4));
     match nearest {
         1.0 => [-sine, cosine],
@@ -176,6 +196,25 @@ pub(in crate::path) fn cosine_density(cosine: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_floor_is_that_of_the_standard_library() {
+        let ends = [
+            0.0,
+            0.5,
+            1.0,
+            1.5,
+            8_388_607.5,
+            8_388_608.0,
+            3e9,
+            f32::INFINITY,
+        ];
+        let near = |x: f32| [x.next_down(), x, x.next_up()];
+        for number in ends.into_iter().flat_map(near).flat_map(|x| [x, -x]) {
+            assert_eq!(floor(number), number.floor(), "{number}");
+        }
+        assert!(floor(f32::NAN).is_nan());
+    }
 
     #[test]
     fn turns_are_those_of_the_arc_tangent() {

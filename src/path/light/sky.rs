@@ -8,7 +8,7 @@ use core::f64::consts::PI;
 use glam::{DMat3, Mat3A, Vec3, Vec3A};
 
 use super::{Emission, Environment, Illumination};
-use crate::path::frame::{single, turn, turns};
+use crate::path::frame::{floor, single, turn, turns};
 use crate::path::{Segment, Surface, color};
 use crate::warp::{Piecewise2d, Place};
 use crate::{Error, Sampler};
@@ -96,7 +96,7 @@ impl Sky {
         let longitude = turns(d.x, -d.z) - 0.5 / self.width as f32;
         let latitude = 2.0 * turns(sine, d.y);
         let below_one = |u: f32| u.clamp(0.0, 1.0 - f32::EPSILON / 2.0);
-        let longitude = below_one(longitude - longitude.floor());
+        let longitude = below_one(longitude - floor(longitude));
         let (column, s) = cell(longitude * self.width as f32, self.width);
         let rows = self.density.len();
         let (row, t) = cell(below_one(latitude) * rows as f32, rows);

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3A};
 
 use super::{Shape, density_of_area};
 use crate::Error;
-use crate::path::frame::{Frame, turn};
+use crate::path::frame::{Frame, turn, turns};
 use crate::path::ray::{Ray, Surface, gamma};
 use crate::path::{Facet, Shading};
 
@@ -168,12 +168,8 @@ impl Shape for Cylinder {
 
     fn shading(&self, surface: &Surface) -> Shading {
         let [x, y, z] = self.local(surface.point - self.start);
-        let turns = y.atan2(x) / TAU;
         Shading {
-            uv: Vec2::new(
-                if turns < 0.0 { turns + 1.0 } else { turns },
-                z / self.length,
-            ),
+            uv: Vec2::new(turns(y, x), z / self.length),
             normal: surface.normal,
             du: (self.axes[1] * x - self.axes[0] * y) * TAU,
             dv: self.axes[2] * self.length,

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3A};
 
 use super::{Shape, density_of_area};
 use crate::Error;
-use crate::path::frame::single;
+use crate::path::frame::{single, turns};
 use crate::path::ray::{Ray, Surface, gamma};
 use crate::path::{Facet, Shading};
 use crate::warp::{Disk as UnitDisk, Warp};
@@ -123,15 +123,14 @@ impl Shape for Disk {
 
     fn shading(&self, surface: &Surface) -> Shading {
         let [s, t] = self.along(surface.point - self.center);
-        let radius = s.hypot(t);
-        let turns = t.atan2(s) / TAU;
+        let radius = (s * s + t * t).sqrt();
         let [cosine, sine] = if radius > 0.0 {
             [s / radius, t / radius]
         } else {
             [1.0, 0.0]
         };
         Shading {
-            uv: Vec2::new(radius, if turns < 0.0 { turns + 1.0 } else { turns }),
+            uv: Vec2::new(radius, turns(t, s)),
             normal: self.normal,
             du: self.first * cosine + self.second * sine,
             dv: (self.second * cosine - self.first * sine) * (TAU * radius),

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3A};
 
 use super::{Shape, density_of_area};
 use crate::Error;
-use crate::path::frame::{Frame, turn};
+use crate::path::frame::{Frame, turn, turns};
 use crate::path::ray::{Ray, Surface, gamma};
 use crate::path::{Facet, Shading};
 
@@ -164,21 +164,17 @@ impl Shape for Sphere {
         let outward = surface.normal * self.side;
         let [first, second, pole] = self.axes;
         let [x, y, z] = self.axes.map(|axis| axis.dot(outward));
-        let radius = x.hypot(y);
+        let radius = (x * x + y * y).sqrt();
         // The azimuth of a pole is that of the first axis.
         let [cosine, sine] = if radius > 0.0 {
             [x / radius, y / radius]
         } else {
             [1.0, 0.0]
         };
-        let turns = y.atan2(x) / TAU;
         let around = second * cosine - first * sine;
         let away = first * cosine + second * sine;
         Shading {
-            uv: Vec2::new(
-                if turns < 0.0 { turns + 1.0 } else { turns },
-                radius.atan2(z) / PI,
-            ),
+            uv: Vec2::new(turns(y, x), 2.0 * turns(radius, z)),
             normal: surface.normal,
             du: around * (TAU * radius * self.radius),
             dv: (away * z - pole * radius) * (PI * self.radius),

@@ -6,6 +6,7 @@ mod texels;
 use glam::{Affine2, Vec2, Vec3A};
 
 use crate::Error;
+use crate::path::frame::floor;
 
 pub use texels::Encoding;
 use texels::Texels;
@@ -38,6 +39,10 @@ impl Wrap {
     fn texel(self, index: i64, count: usize) -> usize {
         // An image has far less than 2^62 texels in a row.
         let length = count.cast_signed() as i64;
+        if (0..length).contains(&index) {
+            // The usual case, without a division.
+            return usize::try_from(index).unwrap_or(0);
+        }
         let index = match self {
             Self::Repeat => index.rem_euclid(length),
             Self::Mirror => {
@@ -222,7 +227,7 @@ impl Bitmap {
 
     #[inline]
     fn around(&self, point: Vec2) -> Around {
-        let corner = point.floor();
+        let corner = point.map(floor);
         #[expect(
             clippy::cast_possible_truncation,
             reason = "a whole number or saturated"

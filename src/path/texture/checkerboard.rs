@@ -4,6 +4,7 @@ use glam::{Affine2, Vec2, Vec3A};
 
 use super::{Parameter, Texture};
 use crate::path::Spot;
+use crate::path::frame::floor;
 
 /// Two textures in turn: in each unit square of the transformed texture coordinates the first one in the quarters
 /// where both coordinates are in the lower half, or both in the upper one, and the second one elsewhere.
@@ -37,7 +38,7 @@ impl Checkerboard {
     #[inline]
     fn field(&self, uv: Vec2) -> usize {
         let uv = self.to_uv.transform_point2(uv);
-        let upper = (uv - uv.floor()).cmpgt(Vec2::splat(0.5));
+        let upper = (uv - uv.map(floor)).cmpgt(Vec2::splat(0.5));
         usize::from(upper.test(0) != upper.test(1))
     }
 

@@ -74,15 +74,14 @@ impl Coat {
     #[inline]
     pub(super) fn passed(&self, cosine: f32) -> f32 {
         let place = cosine.min(1.0) * f32::from(COSINES - 1);
-        let cell = place.floor().min(f32::from(COSINES - 2));
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "a whole number within the table"
+            reason = "the whole part of a number within the table"
         )]
-        let index = cell as usize;
-        let (low, high) = (self.passed[index], self.passed[index + 1]);
-        low + (high - low) * (place - cell)
+        let cell = (place as u16).min(COSINES - 2);
+        let [low, high] = [cell, cell + 1].map(|cell| self.passed[usize::from(cell)]);
+        low + (high - low) * (place - f32::from(cell))
     }
 }
 

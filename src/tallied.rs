@@ -50,6 +50,11 @@ pub(crate) trait Tallied {
     /// The number of evaluations that were asked for.
     fn requested(&self) -> u64;
 
+    /// As [`Progressive::next_look`](crate::Progressive::next_look).
+    fn next_look(&self, evaluations: u64) -> u64 {
+        evaluations.saturating_mul(2)
+    }
+
     fn policy(&self) -> NonFinite;
 
     /// Whether the values are such as the estimator can take.
@@ -162,10 +167,14 @@ pub(crate) fn conclude<E: Tallied, V: Value>(
     Some(Estimate { stop, ..estimate })
 }
 
-/// Where each thread has a source of its own, one evaluation; of a few sources, a block.
+/// Where each thread has a source of its own, one evaluation; of a few sources, or of sources one after the other, a block.
 pub(crate) fn portion<E: Tallied>(estimator: &E) -> u64 {
-    let sources = estimator.sources().map_or(0, |sources| sources.len());
-    if sources < reduce::number() { BLOCK } else { 1 }
+    let threads = reduce::number();
+    let busy = estimator.sources().map_or(0, |sources| {
+        let counts = estimator.counts(&sources, threads as u64);
+        counts.into_iter().filter(|&count| count > 0).count()
+    });
+    if busy < threads { BLOCK } else { 1 }
 }
 
 /// Implements the public traits for an estimator that is [`Tallied`].
@@ -211,6 +220,10 @@ macro_rules! tallied {
 
             fn portion(&self) -> u64 {
                 $crate::tallied::portion(self)
+            }
+
+            fn next_look(&self, evaluations: u64) -> u64 {
+                $crate::tallied::Tallied::next_look(self, evaluations)
             }
         }
     };

@@ -4,7 +4,7 @@ use core::ops::ControlFlow;
 use std::time::Duration;
 
 use estimand::estimators::{Bounded, Strata, Vegas};
-use estimand::points::{Independent, NRooks, Stratified};
+use estimand::points::{Independent, NRooks, PointSet, Stratified};
 use estimand::{
     Average, Error, Estimate, Estimator, Integrand, Moments, MonteCarlo, NonFinite, Progressive,
     Replicated, Sampler, Stop, Value, Warning, cube,
@@ -298,6 +298,33 @@ fn whatever_was_evaluated_before_a_stop_gives_an_estimate() {
         check("vegas", stopped(vegas, &f, evaluations));
         let replicated = Replicated::new(8, huge, Independent::new);
         check("replicated", stopped(replicated, &f, evaluations));
+    }
+}
+
+#[test]
+fn finite_sets_are_taken_one_after_the_other() {
+    let f = cube(PRODUCT);
+    let set = |seed| Stratified::new(1024, 2, seed).unwrap();
+    let size = set(0).size().unwrap();
+    let replicated = |replicates| Replicated::new(replicates, size, set);
+    let estimate = stopped(replicated(1 << 10), &f, 20 * size);
+    let replicates = estimate.replicates.len() as u64;
+    assert!((20..1 << 10).contains(&replicates), "{replicates}");
+    assert_eq!(estimate.used, replicates * size);
+    // No more and no less than these say on their own.
+    let alone = replicated(replicates).estimate(&f).unwrap();
+    assert_eq!(
+        (estimate.mean, estimate.std_error),
+        (alone.mean, alone.std_error)
+    );
+    assert!(estimate.interval(0.9999).unwrap().contains(TRUTH));
+    // A part of one has a mean.
+    let part = stopped(replicated(8), &f, 100);
+    assert!(part.used < size && part.std_error.is_none() && (part.mean - TRUTH).abs() < 0.5);
+    // Tolerances are looked at once, then when all are there.
+    for (least, used) in [(2 * size, 2), (2, 64)] {
+        let tolerant = replicated(64).until().absolute(1.0).unwrap().least(least);
+        assert_eq!(tolerant.estimate(&f).unwrap().used, used * size);
     }
 }
 

@@ -104,12 +104,31 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Replicated<F> {
     }
 
     fn counts(&self, sets: &[P], evaluations: u64) -> Vec<u64> {
+        let sizes: Option<Vec<u64>> = sets.iter().map(PointSet::size).collect();
+        if let Some(sizes) = sizes.filter(|_| evaluations < self.requested()) {
+            // One whole set after the other: some have an error to tell before all have.
+            let mut left = evaluations;
+            let taken = sizes.iter().map(|&size| {
+                let count = size.min(left);
+                left -= count;
+                count
+            });
+            return taken.collect();
+        }
         let count = evaluations.div_ceil(self.replicates).min(self.count);
         sets.iter().map(|set| whole(set, count)).collect()
     }
 
     fn requested(&self) -> u64 {
         self.replicates.saturating_mul(self.count)
+    }
+
+    /// Finite sets have nothing better to tell before the end.
+    fn next_look(&self, evaluations: u64) -> u64 {
+        match (self.points)(hash::hash(self.seed, 0)).size() {
+            Some(_) => u64::MAX,
+            None => evaluations.saturating_mul(2),
+        }
     }
 
     fn policy(&self) -> NonFinite {

@@ -94,7 +94,7 @@
 //! | `glam` | glam's vectors as values | `glam` |
 //! | `serde` | saving and restoring estimates | `serde` |
 //! | `sobol-full` | Sobol' points in up to 21201 dimensions, not 1024 | 1.6 MB of tables |
-//! | `path` | the path tracer | `glam`, `obvhs`, `exr`, `image`, `libm`, `bytemuck`; `memmap2` on Linux |
+//! | `path` | the path tracer | `glam`, `obvhs`, `exr`, `image`, `bytemuck`; `memmap2` on Linux |
 //! | `mitsuba` | reading scene files of Mitsuba 3 into it; implies `path` | `roxmltree`, `ply-rs-bw` |
 //! | `report` | pages, plots and files of a study | `serde`, `serde_json`, `csv`, `base64` |
 //!

@@ -318,13 +318,18 @@ fn finite_sets_are_taken_one_after_the_other() {
         (alone.mean, alone.std_error)
     );
     assert!(estimate.interval(0.9999).unwrap().contains(TRUTH));
-    // A part of one has a mean.
-    let part = stopped(replicated(8), &f, 100);
-    assert!(part.used < size && part.std_error.is_none() && (part.mean - TRUTH).abs() < 0.5);
-    // Tolerances are looked at once, then when all are there.
-    for (least, used) in [(2 * size, 2), (2, 64)] {
+    // A part of one says nothing: it may be all in one place.
+    let part = replicated(8).until().watch(|_| ControlFlow::Break(()));
+    let early = part.estimate(&f).unwrap_err();
+    assert!(matches!(early.reason, Error::TooEarly { used } if used < size));
+    assert_eq!(early.so_far, None);
+    // Two are the first to have an error.
+    for least in [2, size, 2 * size] {
         let tolerant = replicated(64).until().absolute(1.0).unwrap().least(least);
-        assert_eq!(tolerant.estimate(&f).unwrap().used, used * size);
+        assert_eq!(tolerant.estimate(&f).unwrap().used, 2 * size);
+        let median = replicated(64).median().until().absolute(1.0).unwrap();
+        let used = median.least(least).estimate(&f).unwrap().used;
+        assert!(used < 64 * size && used.is_multiple_of(size), "{used}");
     }
 }
 

@@ -68,7 +68,7 @@ const MOST: u64 = 64;
 const FIRST: u64 = 16;
 const MOST_OF_FIRST: u64 = 64;
 
-/// Up to so many samples a sequence is rendered in one pass, or in two where samples are dealt: a pixel is visited once, in the place of twice.
+/// Up to so many samples of one set are rendered in one pass, or in two where samples are dealt: a pixel is visited once, in the place of twice.
 const AT_ONCE: u64 = 256;
 
 /// The fewest passes that tell of an error.

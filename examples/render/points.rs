@@ -89,7 +89,7 @@ impl Points {
         })
     }
 
-    /// A part of about `count` points, and what comes after it.
+    /// A part of about `count` points, and what comes after it. Only what is all of a finite set has a size: of that all is taken.
     pub(crate) fn of_part(
         self,
         position: [u32; 2],

@@ -64,6 +64,10 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Median<F> {
         self.replicated.requested()
     }
 
+    fn next_look(&self, evaluations: u64) -> u64 {
+        self.replicated.next_look(evaluations)
+    }
+
     fn policy(&self) -> NonFinite {
         self.replicated.policy()
     }

@@ -123,12 +123,11 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Replicated<F> {
         self.replicates.saturating_mul(self.count)
     }
 
-    /// Finite sets have nothing better to tell before the end.
+    /// Of finite sets where as many are whole.
     fn next_look(&self, evaluations: u64) -> u64 {
-        match (self.points)(hash::hash(self.seed, 0)).size() {
-            Some(_) => u64::MAX,
-            None => evaluations.saturating_mul(2),
-        }
+        let size = (self.points)(hash::hash(self.seed, 0)).size().unwrap_or(1);
+        let whole = evaluations / size.max(1);
+        whole.saturating_mul(2).max(2).saturating_mul(size)
     }
 
     fn policy(&self) -> NonFinite {
@@ -139,6 +138,11 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Replicated<F> {
         // Replicates that were cut short are worth less than the others: they count only if they are all there
         // is.
         let most = tallies.iter().map(Tally::used).max()?;
+        let set = (self.points)(hash::hash(self.seed, 0));
+        if set.size().is_some_and(|size| most < size) {
+            // A part of a finite set may be all in one place.
+            return None;
+        }
         let whole = tallies.iter().filter(|tally| tally.used() == most);
         // Those of which every value was left out have no mean.
         let known: Vec<&Tally<V>> = whole
@@ -157,7 +161,6 @@ impl<P: PointSet, F: Fn(u64) -> P> Tallied for Replicated<F> {
         warnings.extend(singular(&known, moments.root()));
         warnings.extend(Warning::of_replicates(moments.count()));
         warnings.extend(Warning::of_rejected(all.rejected()));
-        let set = (self.points)(hash::hash(self.seed, 0));
         warnings.extend(Warning::of_power(&set, most));
         Some(Estimate {
             std_error,

@@ -408,7 +408,7 @@ mod tests {
     use super::*;
     use crate::path::filter::{BoxFilter, Filtered};
     use crate::path::scenes;
-    use crate::points::{Hammersley, Independent, Rescrambled, pixel};
+    use crate::points::{BlueNoise, Hammersley, Independent, Rescrambled, pixel};
 
     /// Numbers of points that end within and at batches, that are none, and that are more than are followed together.
     const COUNTS: [u64; 9] = [1, 3, 512, 0, 17, 1500, 1024, 2, 600];
@@ -502,6 +502,37 @@ mod tests {
             };
             let singly: Vec<_> = shares.iter().flat_map(|&share| means(&[share])).collect();
             assert_eq!((means(&shares), singly.len()), (singly, 18));
+        }
+    }
+
+    #[test]
+    fn blue_noise_in_parts_is_that_of_the_whole() {
+        let (view, size) = (scenes::cornell_box(), [4, 1]);
+        for count in [64, 512] {
+            let image = BlueNoise::new(count, 3).unwrap();
+            let share = |x| Share {
+                position: [x, 0],
+                points: image.pixel([x, 0]),
+                count,
+            };
+            let shares = [0, 1, 2, 3].map(share);
+            let whole = view.averages(size, &shares, NonFinite::Fail);
+            let halves = view.averages_in_two(size, &shares, |_| count / 2, NonFinite::Fail);
+            for ((share, whole), halves) in shares.iter().zip(whole).zip(halves) {
+                let halves = halves.map(|half| half.unwrap().mean);
+                let mean = (halves[0] + halves[1]) / 2.0;
+                assert!((mean - whole.unwrap().mean).length() < 1e-12);
+                // One after the other, as passes take them.
+                for (skip, half) in [0, count / 2].into_iter().zip(halves) {
+                    let part = Share {
+                        position: share.position,
+                        points: Skipped::new(&share.points, skip),
+                        count: count / 2,
+                    };
+                    let alone = view.averages(size, &[part], NonFinite::Fail).remove(0);
+                    assert!((alone.unwrap().mean - half).length() < 1e-12);
+                }
+            }
         }
     }
 

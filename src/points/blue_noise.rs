@@ -95,9 +95,9 @@ impl BlueNoisePixel {
     fn axes<const N: usize>(&self, image: u64, first: u32) -> Axes<N> {
         let image = hash(self.image.seed, image);
         let (mut prepared, mut scrambles, mut second) = ([0; N], [0; N], [0; N]);
-        for lane in 0..N {
+        for (lane, above) in (0..N).zip(0..) {
             // Those past the last dimension are not asked for.
-            let dimension = first.wrapping_add(lane as u32);
+            let dimension = first.wrapping_add(above);
             let key = hash(image, u64::from(dimension / 2));
             prepared[lane] = prepare(key);
             scrambles[lane] = hash(!key, u64::from(dimension % 2));
@@ -213,10 +213,14 @@ impl<const N: usize> Axes<N> {
     /// The coordinates of the samples at some places on the curve.
     #[inline(always)]
     fn coordinates(&self, places: [u64; N]) -> [f64; N] {
+        let mut digits = places;
+        for (digits, &second) in digits.iter_mut().zip(&self.second) {
+            *digits = pascal(*digits, second);
+        }
         let mut coordinates = [0.0; N];
-        for lane in 0..N {
-            let digits = pascal(places[lane], self.second[lane]);
-            coordinates[lane] = unit(scramble_reversed(digits, self.scrambles[lane]));
+        let keyed = digits.into_iter().zip(&self.scrambles);
+        for (u, (digits, &key)) in coordinates.iter_mut().zip(keyed) {
+            *u = unit(scramble_reversed(digits, key));
         }
         coordinates
     }
@@ -317,10 +321,11 @@ impl<const N: usize> Curve<N> {
             shifts: [0; N],
             linear: [0; N],
         };
-        for lane in 0..N {
-            let word = hash_prepared(self.prepared[lane], self.digits);
-            order.shifts[lane] = word >> 62;
-            order.linear[lane] = LINEAR >> (((word & 0xffff_ffff) * 6 >> 32) * 8);
+        let lanes = order.shifts.iter_mut().zip(&mut order.linear);
+        for ((shift, linear), &prepared) in lanes.zip(&self.prepared) {
+            let word = hash_prepared(prepared, self.digits);
+            let map = ((word & 0xffff_ffff) * 6) >> 32;
+            (*shift, *linear) = (word >> 62, LINEAR >> (8 * map));
         }
         order
     }
@@ -353,13 +358,14 @@ impl<const N: usize> Order<N> {
     /// Some places, each followed by the image of `digit`, which is one of `base` bits.
     #[inline(always)]
     fn images(&self, mut places: [u64; N], digit: u64, base: u32) -> [u64; N] {
-        for lane in 0..N {
+        let lanes = self.shifts.iter().zip(&self.linear);
+        for (place, (shift, linear)) in places.iter_mut().zip(lanes) {
             let image = if base == 2 {
-                self.linear[lane] >> (2 * digit) & 3 ^ self.shifts[lane]
+                (linear >> (2 * digit) & 3) ^ shift
             } else {
-                digit ^ self.shifts[lane] >> 1
+                digit ^ (shift >> 1)
             };
-            places[lane] = places[lane] << base | image;
+            *place = *place << base | image;
         }
         places
     }
@@ -421,7 +427,8 @@ mod tests {
             for key in (0..KEYS).map(u64::from) {
                 let curve = Curve {
                     prepared: [prepare(hash(3, key))],
-                    digits: 1,
+                    // After some digits, or none.
+                    digits: 1 + key % 3,
                     shuffled: [0],
                 };
                 let images: Vec<_> = (0..1 << base)
@@ -429,7 +436,8 @@ mod tests {
                     .collect();
                 *seen.entry(images).or_insert(0) += 1;
             }
-            let expected = f64::from(KEYS) / f64::from(likely);
+            assert_eq!(seen.len(), likely);
+            let expected = f64::from(KEYS) / likely as f64;
             let squares = seen
                 .values()
                 .map(|&count: &u32| (f64::from(count) - expected).powi(2) / expected);

@@ -2,6 +2,7 @@
 //!
 //! Work and jobs are behind pointers, so that what runs them is compiled once, not for every integrand.
 
+use core::cell::Cell;
 use core::ops::Range;
 use core::time::Duration;
 use std::sync::{
@@ -16,19 +17,23 @@ pub(crate) fn number() -> usize {
 }
 
 /// Runs `work` on a thread of the pool, so that the loops in it need not change threads each; here, if there is one thread only. The
-/// other threads stay awake between the loops.
+/// other threads stay awake between the loops, unless this is part of something that keeps them busy.
 pub(crate) fn inside(work: &mut (dyn FnMut() + Send)) {
     if number() == 1 {
         return work();
     }
     rayon::scope(|_| {
         let over = Over::default();
-        for _ in 1..number() {
-            let over = Arc::clone(&over.0);
-            // Nobody waits for its end, which may be that of a long job.
-            rayon::spawn(move || stay(&over));
+        if let Some(_occupied) = Occupied::at_first() {
+            for _ in 1..number() {
+                let over = Arc::clone(&over.0);
+                // Nobody waits for its end, which may be that of a long job.
+                rayon::spawn(move || stay(&over));
+            }
+            work();
+        } else {
+            work();
         }
-        work();
     });
 }
 
@@ -36,6 +41,10 @@ pub(crate) fn inside(work: &mut (dyn FnMut() + Send)) {
 /// us to wake, which is as long as much of what one thread does between two loops.
 fn stay(over: &AtomicBool) {
     const WHILE: Duration = Duration::from_millis(1);
+    // A thread that waits for others, and finds this in the meantime, has better things to do.
+    let Some(_occupied) = Occupied::at_first() else {
+        return;
+    };
     let mut idle = Instant::now();
     while !over.load(Ordering::Relaxed) && idle.elapsed() < WHILE {
         match rayon::yield_now() {
@@ -56,6 +65,34 @@ impl Drop for Over {
     }
 }
 
+/// A thread that works on something, until this is dropped.
+struct Occupied {
+    before: bool,
+}
+
+thread_local! {
+    static OCCUPIED: Cell<bool> = const { Cell::new(false) };
+}
+
+impl Occupied {
+    fn new() -> Self {
+        Self {
+            before: OCCUPIED.replace(true),
+        }
+    }
+
+    /// Unless it is already.
+    fn at_first() -> Option<Self> {
+        (!OCCUPIED.get()).then(Self::new)
+    }
+}
+
+impl Drop for Occupied {
+    fn drop(&mut self) {
+        OCCUPIED.set(self.before);
+    }
+}
+
 /// The values of two jobs that know nothing of each other: while one has nothing to share out, there is the other.
 pub(crate) fn both<A: Send, B: Send>(
     one: impl FnOnce() -> A + Send,
@@ -73,6 +110,7 @@ pub(super) fn take_in_order<T: Send>(
     job: &(dyn Fn(u64) -> T + Sync),
     take: &mut (dyn FnMut(T) -> bool + Send),
 ) {
+    let _occupied = Occupied::new();
     let length = usize::try_from(jobs.end - jobs.start).expect("results that memory can hold");
     let places: Vec<Mutex<Option<T>>> = (0..length).map(|_| Mutex::new(None)).collect();
     // Jobs go by a counter, not by parts of the range: values come nearly in order, so that few are held.
@@ -83,6 +121,7 @@ pub(super) fn take_in_order<T: Send>(
             return false;
         };
         let last = OnPanic(&next, length);
+        let _occupied = Occupied::new();
         let value = job(jobs.start + number as u64);
         *open(place) = Some(value);
         core::mem::forget(last);
@@ -135,6 +174,7 @@ fn open<T>(place: &Mutex<T>) -> MutexGuard<'_, T> {
 #[cfg(test)]
 mod tests {
     use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::sync::atomic::AtomicU64;
 
     use super::*;
 
@@ -164,5 +204,48 @@ mod tests {
         }));
         let run = run.into_inner();
         assert!(all.is_err() && run < 1000, "{run} jobs");
+    }
+
+    /// The sum below `count`, by two loops one after the other.
+    fn sum(count: u64) -> u64 {
+        let mut sum = 0;
+        inside(&mut || {
+            for part in 0..2 {
+                take_in_order(0..count, &|job| job, &mut |job| {
+                    sum += part * job;
+                    true
+                });
+            }
+        });
+        sum
+    }
+
+    #[test]
+    fn work_within_work_has_no_threads_that_stay() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build();
+        let pool = pool.unwrap();
+        let total = AtomicU64::new(0);
+        pool.install(|| {
+            take_in_order(0..200, &|job| sum(100 + job), &mut |sum| {
+                total.fetch_add(sum, Ordering::Relaxed);
+                true
+            });
+            assert!(!OCCUPIED.get());
+        });
+        let expected: u64 = (100..300).map(|count| count * (count - 1) / 2).sum();
+        assert_eq!(total.into_inner(), expected);
+        // Nothing is left that threads would have to look through.
+        let marks = pool.broadcast(|_| OCCUPIED.get());
+        assert_eq!(marks, [false; 3]);
+    }
+
+    #[test]
+    fn work_that_panics_is_over() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+        pool.unwrap().install(|| {
+            let outcome = catch_unwind(|| inside(&mut || panic!("as it should")));
+            assert!(outcome.is_err() && !OCCUPIED.get());
+            assert_eq!(sum(10), 45);
+        });
     }
 }

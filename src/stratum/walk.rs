@@ -171,14 +171,19 @@ impl<'a> Walk<'a> {
 
     fn merge<V: Value>(&self, visited: &mut Visited<V>, given: Given<V>) {
         for (visit, stratum) in (given.first..).zip(&given.strata) {
-            match visited.strata.get_mut(self.stratum(visit)) {
-                Some(place) => place.merge(stratum),
-                // Those that are visited in turn come one after the other.
-                None => visited.strata.push(*stratum),
+            let place = self.stratum(visit);
+            if let Some(before) = visited.strata.get_mut(place) {
+                before.merge(stratum);
+            } else {
+                // Of those that are visited in turn, the ones before that had no value may be missing.
+                visited.strata.resize(place, Stratum::EMPTY);
+                visited.strata.push(*stratum);
             }
         }
         for (visit, weight) in given.left_out {
             let stratum = self.stratum(visit);
+            let least = visited.strata.len().max(stratum + 1);
+            visited.strata.resize(least, Stratum::EMPTY);
             visited.left_out.entry(stratum).or_default().push(weight);
         }
     }

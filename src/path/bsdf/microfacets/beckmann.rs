@@ -21,7 +21,7 @@ pub(super) fn seen(cosine: f32, rough: f32) -> f32 {
     0.5 * (cosine * (1.0 + erf(a, gauss)) + rough * FRAC_1_SQRT_PI * gauss)
 }
 
-/// The error function of `x >= 0`, given `gauss = exp(-x^2)`, to 1.5e-7.[^hastings]
+/// The error function of `x >= 0`, given `gauss = exp(-x^2)`, to 3e-7 with its rounding.[^hastings]
 ///
 /// [^hastings]: Hastings, Cecil (1955). *Approximations for Digital Computers*. Princeton University Press. Also formula 7.1.26 of Abramowitz,
 ///     Milton; Stegun, Irene (1964). *Handbook of Mathematical Functions*.

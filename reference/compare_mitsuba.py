@@ -36,8 +36,9 @@ PINNED = "3.9.1"
 # `ldsampler` is left out: it is slightly biased in this version.
 SAMPLERS = ["independent", "multijitter"]
 
-# As many samples in every pixel; more where they differ more; paths reused by neighbours; both.
-OURS = ["", "--adaptive", "--reuse 8", "--reuse 16 --adaptive"]
+# As the program is by itself, with blue noise; with points for less noise, as it takes for the others; more samples where they differ more; paths
+# reused by neighbours; both.
+OURS = ["", "--points rescrambled", "--adaptive", "--reuse 8", "--reuse 16 --adaptive"]
 
 
 def included(file: Path) -> str:
@@ -79,8 +80,7 @@ class Ours:
 
     def __init__(self, file: Path, program: Path, options: str, values: dict[str, str]):
         self.name = f"ours {options}".strip()
-        points = [] if "--points" in options else ["--points", "rescrambled"]
-        self.command = [program, file, *points, *options.split(), "--json", "-"]
+        self.command = [program, file, *options.split(), "--json", "-"]
         for name, value in values.items():
             self.command += ["-D", f"{name}={value}"]
         self.load = self.cold = 0.0

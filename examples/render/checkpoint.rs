@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::state::State;
 
+/// To be counted up with every change of the values that a seed gives: rows of before and after it do not go together.
+const VALUES: u64 = 1;
+
 /// A file that work is saved to.
 pub(crate) struct Checkpoint {
     file: PathBuf,
@@ -39,7 +42,7 @@ impl Checkpoint {
     pub(crate) fn new(file: &Path, work: &str) -> Self {
         let work = work
             .bytes()
-            .fold(0, |key, byte| hash::hash(key, byte.into()));
+            .fold(VALUES, |key, byte| hash::hash(key, byte.into()));
         Self {
             file: file.to_owned(),
             work,

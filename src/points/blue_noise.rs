@@ -177,19 +177,22 @@ impl BlueNoisePixel {
             let curve = axes.curve.followed_by(index >> bits, samples - bits);
             curve.followed_by_all(bits, places);
             let place = (index % (1 << bits)) as usize;
-            let places = &places[place..1 << bits];
+            let places = &mut places[place..1 << bits];
             let now = places.len().min(out.len() / block.width);
             let (rows, later) = out.split_at_mut(now * block.width);
             let rows = rows.chunks_exact_mut(block.width);
             if columns.len() == TOGETHER {
-                for (row, &place) in rows.zip(places) {
+                for (row, &mut place) in rows.zip(places) {
                     row[columns.start..][..TOGETHER].copy_from_slice(&axes.coordinates(place));
                 }
             } else {
-                for (row, &place) in rows.zip(places) {
-                    let coordinates = axes.coordinates(place);
-                    for (u, coordinate) in row[columns.clone()].iter_mut().zip(coordinates) {
-                        *u = coordinate;
+                // Whole vectors first, in the place of what they are made of: some of each is left out.
+                for place in places.iter_mut().take(now) {
+                    *place = axes.coordinates(*place).map(f64::to_bits);
+                }
+                for (row, bits) in rows.zip(places) {
+                    for (u, &bits) in row[columns.clone()].iter_mut().zip(bits.iter()) {
+                        *u = f64::from_bits(bits);
                     }
                 }
             }

@@ -24,16 +24,14 @@ pub(crate) fn inside(work: &mut (dyn FnMut() + Send)) {
     }
     rayon::scope(|_| {
         let over = Over::default();
-        if let Some(_occupied) = Occupied::at_first() {
-            for _ in 1..number() {
-                let over = Arc::clone(&over.0);
-                // Nobody waits for its end, which may be that of a long job.
-                rayon::spawn(move || stay(&over));
-            }
-            work();
-        } else {
-            work();
+        let occupied = Occupied::at_first();
+        let others = if occupied.is_some() { number() - 1 } else { 0 };
+        for _ in 0..others {
+            let over = Arc::clone(&over.0);
+            // Nobody waits for its end, which may be that of a long job.
+            rayon::spawn(move || stay(&over));
         }
+        work();
     });
 }
 

@@ -121,6 +121,16 @@ const PILOT: u64 = 0x0070_696c_6f74;
 /// Set by Ctrl-C.
 static STOP: AtomicBool = AtomicBool::new(false);
 
+/// Whether there is work that would be lost without a proper end: not while a scene is loaded, or a pilot is under way.
+static RENDERING: AtomicBool = AtomicBool::new(false);
+
+fn interrupt() {
+    STOP.store(true, Ordering::Relaxed);
+    if !RENDERING.load(Ordering::Relaxed) {
+        std::process::exit(INTERRUPTED.into());
+    }
+}
+
 fn main() -> ExitCode {
     match run(&Arguments::parse()) {
         Ok(()) if STOP.load(Ordering::Relaxed) => ExitCode::from(INTERRUPTED),
@@ -141,7 +151,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         .as_ref()
         .map(Image::read_exr)
         .transpose()?;
-    ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed))?;
+    ctrlc::set_handler(interrupt)?;
 
     let start = Instant::now();
     let overrides: Vec<_> = arguments
@@ -200,6 +210,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         checkpoint: checkpoint.as_ref(),
         stop: &STOP,
     };
+    RENDERING.store(true, Ordering::Relaxed);
     let work = Work::of(&job.run()?)?;
     output::write(
         arguments,

@@ -13,7 +13,8 @@ use crate::path::light::{
     AreaLights, Background, Constant, DirectionalLight, Emission, Emitter, Environment,
     Illumination, Light, LightTree, NoEnvironment, NoLight, PointLight, Sky, Source, Surroundings,
 };
-use crate::path::reuse::{Part, Pixels};
+use crate::path::reuse::{self, Group, MOST, Part, Pixels, Traces, WIDTH};
+use crate::path::roulette::Rule;
 use crate::path::sensor::Pinhole;
 use crate::path::shape::{Cylinder, Disk, Flat, Mesh, Primitive, Sphere, cuboid};
 use crate::path::texture::{Checkerboard, Parameter, Texture, Uniform};
@@ -107,6 +108,85 @@ fn packets_give_the_bits_of_single_paths_in_the_cornell_box() {
     view.paths = view.learn_roulette([16, 16], 4, 1).unwrap();
     assert!(view.paths != Paths::default());
     agree(&view);
+}
+
+/// Points anywhere, near and far, and two that are not told apart, in slots that kept others before.
+#[test]
+fn packets_share_light_as_single_paths_do() {
+    let view = room::<AreaLights, _>(true, NoEnvironment).unwrap();
+    let packet = view.scene.packet().unwrap();
+    let mut state = 0;
+    let mut random = || {
+        state += 1;
+        unit_f32(hash(12, state))
+    };
+    let group = Group {
+        pixels: MOST,
+        rounds: 2 * WIDTH,
+        slot: WIDTH,
+    };
+    let slots = WIDTH + group.pixels * group.rounds;
+    let roulette = Rule::of_throughput(1);
+    let mut traces = Traces::default();
+    for size in [1e-19, 1e-3, 1.0, 1e18_f32] {
+        let mut vector = || Vec3A::from([0; 3].map(|_| 2.0 * random() - 1.0));
+        let mut point = || reuse::Diffuse {
+            surface: Surface {
+                point: vector() * (0.6 * size),
+                normal: vector().normalize(),
+                margin: 1e-6 * size,
+                detail: (),
+            },
+            shading: vector().normalize(),
+            albedo: vector().abs(),
+        };
+        let mut near = [point(), point()];
+        for (near, side) in near.iter_mut().zip([1.0, -1.0]) {
+            near.surface.normal = Vec3A::Z * side;
+            near.surface.point = near.surface.normal * -near.surface.margin;
+            near.shading = near.surface.normal;
+        }
+        traces.clear(slots);
+        for slot in WIDTH..slots {
+            let kept = hash(u64::from(size.to_bits()), slot as u64) % 4;
+            if kept > 0 {
+                traces.set_first(slot, point(), &roulette);
+            }
+            if kept > 1 {
+                traces.set_second(slot, point(), point().albedo);
+            }
+            let weight = point().albedo.x;
+            traces.end(slot, point().albedo, weight);
+        }
+        let (giver, taker) = (group.slot(0, 3), group.slot(1, 3));
+        traces.set_first(giver, point(), &roulette);
+        traces.set_second(giver, near[1], Vec3A::ONE);
+        traces.end(giver, Vec3A::ONE, 1.0);
+        traces.set_first(taker, near[0], &roulette);
+        let mut singly = Traces {
+            slots: traces.slots.clone(),
+        };
+        singly.share(&group, &|way| view.scene.occluded(way));
+        packet.share(view.scene.geometry(), &[group], &mut traces);
+        let values = |traces: &Traces| -> Vec<_> { traces.values(0..slots).collect() };
+        assert_eq!(values(&traces), values(&singly), "{size}");
+    }
+}
+
+/// Lit walls around what is darker than all that shares its light.
+#[test]
+fn packets_give_the_bits_of_single_paths_of_what_is_dark() {
+    let walls = cuboid([0.0; 3], Mat3A::IDENTITY.to_cols_array_2d()).unwrap();
+    let dark = Flat::parallelogram([-0.5, -0.5, 0.2], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]).unwrap();
+    let lamp = Flat::parallelogram([-0.1, 0.7, 0.0], [0.2, 0.0, 0.0], [0.0, 0.0, 0.2]).unwrap();
+    let law = |albedo| Lambertian::new([albedo; 3]).unwrap();
+    let objects: Vec<Object<Lambertian>> = vec![
+        Object::new(walls.into_iter().map(Flat::turned), law(0.7)),
+        Object::new([dark], law(5e-7)),
+        Object::new([lamp], law(0.0)).emitting([9.0; 3]).unwrap(),
+    ];
+    let scene = Scene::new(objects, NoEnvironment).unwrap();
+    agree::<_, AreaLights, _>(&seen_from([0.1, -0.1, -0.9], 70.0, scene).unwrap());
 }
 
 /// A scene, seen from `origin` towards the middle at an angle of so many degrees.

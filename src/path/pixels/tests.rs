@@ -51,6 +51,24 @@ fn each_pixel_is_as_it_is_alone() {
 }
 
 #[test]
+fn finite_sets_are_taken_whole_where_paths_are_reused() {
+    let mut view = scenes::cornell_box();
+    view.paths = view.paths.reused_by(2).unwrap();
+    let means = [5, 16].map(|count| {
+        let share = |x| Share {
+            position: [x, 3],
+            points: Hammersley::new(16, 5).unwrap(),
+            count,
+        };
+        let outcomes = view.averages([9, 5], &[share(3), share(4)], NonFinite::Fail);
+        let means = outcomes.into_iter().map(Result::unwrap);
+        means.map(|it| (it.mean, it.used)).collect::<Vec<_>>()
+    });
+    assert_eq!(means[0], means[1]);
+    assert_eq!(means[0][0].1, 16);
+}
+
+#[test]
 fn two_parts_are_as_they_are_alone() {
     let (view, size) = (scenes::cornell_box(), [9, 1]);
     let mut lit = scenes::cornell_box();

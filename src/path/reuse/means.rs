@@ -361,7 +361,7 @@ mod tests {
 
     #[test]
     fn pixels_of_some_columns_go_together() {
-        let row = (5..70).map(|x| [x, 3]).chain((60..62).map(|x| [x, 4]));
+        let row = (5..70).map(|x| [x, 3]).chain((66..68).map(|x| [x, 4]));
         // More than there are, in one place.
         let shares: Vec<_> = (row.chain([[0, 0]; 20]))
             .map(|position| share(position, 2))

@@ -105,6 +105,30 @@ fn what_is_in_the_way_leaves_more_to_the_others() {
 }
 
 #[test]
+fn light_without_end_stays_with_those_that_see_it() {
+    let (mut traces, group) = traces();
+    traces.end(group.slot(0, 5), Vec3A::INFINITY, 2.0);
+    traces.share(&group, &|way| way.ray.origin.x > 1.5);
+    assert_eq!(value(&traces, &group, 1), Vec3A::INFINITY);
+    close(value(&traces, &group, 2), Vec3A::splat(2.0));
+}
+
+#[test]
+fn what_was_known_of_other_paths_is_forgotten() {
+    let (mut traces, group) = traces();
+    traces.clear(4 * WIDTH);
+    for pixel in 0..3 {
+        let slot = group.slot(pixel, 5);
+        assert!(!traces.has_first(slot));
+        traces.end(slot, LIGHT, 1.0);
+    }
+    traces.share(&group, &|way| panic!("{way:?}"));
+    for pixel in 0..3 {
+        close(value(&traces, &group, pixel), LIGHT);
+    }
+}
+
+#[test]
 fn nothing_is_given_to_other_sides_and_other_rounds() {
     for away in [
         // Below the second point's surface, the first point's horizon, and in another round.
@@ -134,29 +158,32 @@ fn nothing_is_given_to_other_sides_and_other_rounds() {
 /// A dark pixel, whose paths rarely go on and are bright then, and a bright one.
 #[test]
 fn what_the_roulette_lets_go_on_is_not_brighter_than_its_light() {
-    let roulette = Rule::of_throughput(1);
-    let group = Group {
-        pixels: 2,
-        rounds: WIDTH,
-        slot: 0,
-    };
-    let mut traces = Traces::default();
-    traces.clear(2 * WIDTH);
-    let albedos = [0.05, 0.7].map(Vec3A::splat);
-    for (pixel, albedo) in albedos.into_iter().enumerate() {
-        let mut point = diffuse([0.0; 3], Vec3A::Z);
-        point.albedo = albedo;
-        traces.set_first(group.slot(pixel, 5), point, &roulette);
-        traces.end(group.slot(pixel, 5), Vec3A::ZERO, 1.0);
-    }
-    let slot = group.slot(0, 5);
-    traces.set_second(slot, diffuse([0.0, 0.0, 2.0], -Vec3A::Z), Vec3A::ZERO);
-    // What is carried to the second point is the albedo over the probability: one.
-    traces.end(slot, LIGHT, 1.0);
-    traces.share(&group, &|_| false);
-    // The densities are alike but for the survival.
-    for (pixel, albedo) in albedos.into_iter().enumerate() {
-        close(value(&traces, &group, pixel), LIGHT * albedo / 0.75);
+    let albedos = [[0.02, 0.05, 0.0], [0.7, 0.1, 0.3]].map(Vec3A::from);
+    // What is carried to the second point is the largest albedo over the probability, which is that albedo, or one where the
+    // roulette begins later.
+    for (from, carried, survivals) in [(1, 1.0, 0.75), (2, 0.05, 2.0)] {
+        let roulette = Rule::of_throughput(from);
+        let group = Group {
+            pixels: 2,
+            rounds: WIDTH,
+            slot: 0,
+        };
+        let mut traces = Traces::default();
+        traces.clear(2 * WIDTH);
+        for (pixel, albedo) in albedos.into_iter().enumerate() {
+            let mut point = diffuse([0.0; 3], Vec3A::Z);
+            point.albedo = albedo;
+            traces.set_first(group.slot(pixel, 5), point, &roulette);
+            traces.end(group.slot(pixel, 5), Vec3A::ZERO, 1.0);
+        }
+        let slot = group.slot(0, 5);
+        traces.set_second(slot, diffuse([0.0, 0.0, 2.0], -Vec3A::Z), Vec3A::ZERO);
+        traces.end(slot, LIGHT * carried, 1.0);
+        traces.share(&group, &|_| false);
+        // The densities are alike but for the survival.
+        for (pixel, albedo) in albedos.into_iter().enumerate() {
+            close(value(&traces, &group, pixel), LIGHT * albedo / survivals);
+        }
     }
 }
 
@@ -199,13 +226,13 @@ fn no_distance_loses_light() {
     for exponent in -30..=37 {
         let size = 10_f32.powi(exponent);
         let group = Group {
-            pixels: 2,
+            pixels: MOST,
             rounds: WIDTH,
             slot: 0,
         };
         let mut traces = Traces::default();
-        traces.clear(2 * WIDTH);
-        for pixel in 0..2 {
+        traces.clear(MOST * WIDTH);
+        for pixel in 0..MOST {
             let mut point = diffuse([0.0; 3], Vec3A::Z);
             point.surface.margin = 0.0;
             traces.set_first(group.slot(pixel, 0), point, &ALWAYS);
@@ -215,9 +242,11 @@ fn no_distance_loses_light() {
             traces.end(group.slot(pixel, 0), Vec3A::splat(3.0), 1.0);
         }
         traces.share(&group, &|_| false);
-        for pixel in 0..2 {
-            let value = traces.values(group.slot(pixel, 0)..group.slot(pixel, 0) + 1);
-            assert_eq!(value.collect::<Vec<_>>(), [Vec3::splat(3.0)], "{size}");
+        for pixel in 0..MOST {
+            let slot = group.slot(pixel, 0);
+            let value: Vec<_> = traces.values(slot..slot + 1).collect();
+            let off = (value[0] - Vec3::splat(3.0)).length();
+            assert!(off < 1e-5, "{size}: {value:?}");
         }
     }
 }

@@ -21,7 +21,7 @@ pub(super) fn seen(cosine: f32, rough: f32) -> f32 {
     0.5 * (cosine * (1.0 + erf(a, gauss)) + rough * FRAC_1_SQRT_PI * gauss)
 }
 
-/// The error function of `x >= 0`, given `gauss = exp(-x^2)`, to 3e-7 with its rounding.[^hastings]
+/// The error function of `x >= 0`, given `gauss = exp(-x^2)`, to 5e-7 with its rounding.[^hastings]
 ///
 /// [^hastings]: Hastings, Cecil (1955). *Approximations for Digital Computers*. Princeton University Press. Also formula 7.1.26 of Abramowitz,
 ///     Milton; Stegun, Irene (1964). *Handbook of Mathematical Functions*.
@@ -131,7 +131,7 @@ mod tests {
         for i in 0..=4000_u16 {
             let x = 0.001 * f32::from(i);
             let off = f64::from(erf(x, (-x * x).exp())) - libm::erf(f64::from(x));
-            assert!(off.abs() < 3e-7, "{x}: {off}");
+            assert!(off.abs() < 5e-7, "{x}: {off}");
         }
     }
 

@@ -62,7 +62,7 @@ pub trait Progressive: Estimator {
         evaluations: u64,
     ) -> Result<(), Error>;
 
-    /// The estimate that the work so far gives; `None` if there is no value yet.
+    /// The estimate that the work so far gives; `None` if there is no value yet, or no whole set where only whole ones count.
     fn conclude<V: Value>(&self, state: &Self::State<V>) -> Option<Estimate<V>>;
 
     /// How many evaluations one thread makes at a time, at the most: fewer than that for each thread may leave some idle.

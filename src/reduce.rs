@@ -4,9 +4,11 @@
 #[cfg(feature = "parallel")]
 mod threads;
 #[cfg(feature = "parallel")]
+use threads::inside;
+#[cfg(feature = "parallel")]
 use threads::take_in_order;
 #[cfg(feature = "parallel")]
-pub(crate) use threads::{both, inside, number};
+pub(crate) use threads::{both, number, several};
 
 /// Runs `job` for `0..count` and hands the results to `take` in the order of their indices.
 ///
@@ -99,7 +101,13 @@ pub(crate) fn number() -> usize {
 
 /// Runs `work`.
 #[cfg(not(feature = "parallel"))]
-pub(crate) fn inside(work: &mut (dyn FnMut() + Send)) {
+fn inside(work: &mut (dyn FnMut() + Send)) {
+    work();
+}
+
+/// Runs `work` that consists of several loops.
+#[cfg(not(feature = "parallel"))]
+pub(crate) fn several(work: &mut (dyn FnMut() + Send)) {
     work();
 }
 

@@ -62,7 +62,7 @@ pub(crate) trait Tallied {
         Ok(())
     }
 
-    /// The estimate that the closed tallies give; `None` if they hold no value.
+    /// The estimate that the closed tallies give; `None` if they hold no value that counts.
     fn summary<V: Value>(&self, tallies: &[Tally<V>]) -> Option<Estimate<V>>;
 }
 

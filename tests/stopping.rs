@@ -94,7 +94,7 @@ impl Integrand for Holes {
     type Value = [f64; 2];
     fn evaluate<S: Sampler>(&self, u: &mut S) -> [f64; 2] {
         let [x, y, z] = std::array::from_fn(|_| u.next_1d());
-        if x < 0.1 && y < 0.3 {
+        if x < 0.1 && y < 0.3 || x + y > 1.6 {
             [f64::NAN, x]
         } else {
             [x * y, (5.0 * z).sin()]

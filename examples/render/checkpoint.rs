@@ -59,7 +59,7 @@ impl Checkpoint {
         let opened = open().map_err(|e| about(&e))?;
         let what: About = serde_json::from_reader(opened).map_err(|e| about(&e))?;
         if what.work != self.work {
-            return Err(about(&"this checkpoint is of another scene or of other arguments").into());
+            return Err(about(&"this checkpoint is of another scene, of other arguments or of another version of this program").into());
         }
         let opened = open().map_err(|e| about(&e))?;
         let Saved { state } = serde_json::from_reader(opened).map_err(|e| about(&e))?;

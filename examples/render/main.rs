@@ -28,7 +28,7 @@ use render::Job;
 /// Renders a scene file of Mitsuba 3.
 ///
 /// Without --spp, --time or --noise it takes the number of samples that the file asks for. Ctrl-C stops early, writes what is
-/// there, and exits with 130.
+/// there, if the scene is loaded and the pilot of --learn-roulette over, and exits with 130.
 #[derive(Parser)]
 struct Arguments {
     /// The scene, an XML file

@@ -49,6 +49,9 @@ pub struct Replicated<F> {
 impl<P: PointSet, F: Fn(u64) -> P> Replicated<F> {
     /// `replicates` averages over the first `count` points of a set each, or over the whole of a finite set.
     ///
+    /// Finite sets are taken one after the other by a run that may be [stopped](crate::estimators::Until): it has an estimate once one is whole, and an error
+    /// once two are.
+    ///
     /// `points` makes the set of a replicate from the replicate's seed, a well mixed word.
     pub const fn new(replicates: u64, count: u64, points: F) -> Self {
         Self {

@@ -6,6 +6,7 @@ use crate::progressive::at_once;
 use crate::stratum::{Rows, Stratified, Visited, Walk, apportion, counts, evenly};
 use crate::{
     Error, Estimate, Estimator, Integrand, NonFinite, Outcome, Progressive, Stop, Value, hash,
+    reduce,
 };
 
 mod cell;
@@ -137,8 +138,43 @@ impl Strata {
         }
     }
 
-    /// Goes on with a phase until `evaluations` of its points, or a few more, were evaluated, or all.
+    /// Goes on until about so many `evaluations` were made.
     fn go_on<I: Integrand>(
+        &self,
+        state: &mut StrataState<Wide<I>>,
+        integrand: &I,
+        evaluations: u64,
+    ) -> Result<(), Error> {
+        let StrataState { pilot, main } = state;
+        let strata = [&*pilot, &*main].map(|phase| phase.visited.strata().len());
+        if strata != [if self.neyman { self.strata } else { 0 }, self.strata] {
+            let domain = "one of this estimator, with as many strata";
+            return Err(Error::refused("state", domain, strata[1]));
+        }
+        let each = self.pilot();
+        let spent = each * self.strata as u64;
+        let ends = if self.neyman {
+            let counts = vec![each; self.strata];
+            let seed = hash::hash(!self.seed, 0);
+            self.walk(pilot, counts, seed, integrand, evaluations)?;
+            if evaluations <= spent {
+                return Ok(());
+            }
+            self.allocate(&pilot.visited, self.count - spent)
+        } else {
+            evenly(self.strata, self.count)
+        };
+        self.walk(
+            main,
+            counts(&ends),
+            self.seed,
+            integrand,
+            evaluations - spent,
+        )
+    }
+
+    /// Goes on with a phase until `evaluations` of its points, or a few more, were evaluated, or all.
+    fn walk<I: Integrand>(
         &self,
         phase: &mut Phase<Wide<I>>,
         counts: Vec<u64>,
@@ -243,32 +279,9 @@ impl Progressive for Strata {
         integrand: &I,
         evaluations: u64,
     ) -> Result<(), Error> {
-        let StrataState { pilot, main } = state;
-        let strata = [&*pilot, &*main].map(|phase| phase.visited.strata().len());
-        if strata != [if self.neyman { self.strata } else { 0 }, self.strata] {
-            let domain = "one of this estimator, with as many strata";
-            return Err(Error::refused("state", domain, strata[1]));
-        }
-        let each = self.pilot();
-        let spent = each * self.strata as u64;
-        let ends = if self.neyman {
-            let counts = vec![each; self.strata];
-            let seed = hash::hash(!self.seed, 0);
-            self.go_on(pilot, counts, seed, integrand, evaluations)?;
-            if evaluations <= spent {
-                return Ok(());
-            }
-            self.allocate(&pilot.visited, self.count - spent)
-        } else {
-            evenly(self.strata, self.count)
-        };
-        self.go_on(
-            main,
-            counts(&ends),
-            self.seed,
-            integrand,
-            evaluations - spent,
-        )
+        let mut outcome = Ok(());
+        reduce::several(&mut || outcome = self.go_on(state, integrand, evaluations));
+        outcome
     }
 
     fn conclude<V: Value>(&self, state: &StrataState<V>) -> Option<Estimate<V>> {

@@ -24,8 +24,8 @@ use pace::Pace;
 /// The error is half the width of the interval at the level (95 % if [`level`](Self::level) does not say otherwise). It
 /// must be at most the absolute tolerance or at most the relative one times the mean, in every component.
 ///
-/// The error is looked at after [`least`](Self::least) evaluations and then each time that their number has about doubled,
-/// so that few looks give few chances to stop by luck; the level is that of each look. An error bar of zero,
+/// The error is looked at after [`least`](Self::least) evaluations and then each time that their number has about doubled (of finite
+/// sets: the number of those that are whole), so that few looks give few chances to stop by luck; the level is that of each look. An error bar of zero,
 /// or one that hangs on a few values ([`Warning::FewValues`]) or strata ([`Warning::FewStrata`]), meets no tolerance: a rare event that was not
 /// seen yet looks like that. At a singularity ([`Warning::Singular`]) it may be met by an interval that holds less often than it claims.
 ///
@@ -34,7 +34,7 @@ use pace::Pace;
 /// Both are asked in between, some twenty times a second, as far as the integrand allows: where that would leave threads idle, which make
 /// [so many](Progressive::portion) evaluations at a time, once a second at the least; and where one evaluation takes
 /// longer, after each, or after a part of those that come in parts. What they stop is still a
-/// full estimate, of the evaluations made by then; which they are depends on the machine, unlike everything else
+/// full estimate, of the evaluations made by then, or of the finite sets that are whole, [`Error::TooEarly`] if none is; which they are depends on the machine, unlike everything else
 /// in this crate.
 #[must_use]
 pub struct Until<E> {

@@ -395,7 +395,7 @@ impl Progressive for Vegas {
         evaluations: u64,
     ) -> Result<(), Error> {
         let mut outcome = Ok(());
-        reduce::inside(&mut || outcome = self.go_on(state, integrand, evaluations));
+        reduce::several(&mut || outcome = self.go_on(state, integrand, evaluations));
         outcome
     }
 

@@ -16,20 +16,24 @@ pub(crate) fn number() -> usize {
     rayon::current_num_threads()
 }
 
-/// Runs `work` on a thread of the pool, so that the loops in it need not change threads each; here, if there is one thread only. The
-/// other threads stay awake between the loops, unless this is part of something that keeps them busy.
+/// Runs `work` on a thread of the pool, so that the loops in it need not change threads each; here, if there is one thread only.
 pub(crate) fn inside(work: &mut (dyn FnMut() + Send)) {
     if number() == 1 {
         return work();
     }
-    rayon::scope(|_| {
+    rayon::scope(|_| work());
+}
+
+/// Runs `work` that consists of loops one after the other: the other threads stay awake between them, unless this is itself a part of such
+/// work, or a job.
+pub(crate) fn several(work: &mut (dyn FnMut() + Send)) {
+    inside(&mut || {
         let over = Over::default();
         let occupied = Occupied::at_first();
-        let others = if occupied.is_some() { number() - 1 } else { 0 };
-        for _ in 0..others {
+        if occupied.is_some() && number() > 1 {
             let over = Arc::clone(&over.0);
             // Nobody waits for its end, which may be that of a long job.
-            rayon::spawn(move || stay(&over));
+            rayon::spawn_broadcast(move |_| stay(&over));
         }
         work();
     });
@@ -108,7 +112,18 @@ pub(super) fn take_in_order<T: Send>(
     job: &(dyn Fn(u64) -> T + Sync),
     take: &mut (dyn FnMut(T) -> bool + Send),
 ) {
-    let _occupied = Occupied::new();
+    rayon::scope(|_| {
+        // The thread that waits for the others, which may not be this one.
+        let _occupied = Occupied::new();
+        take_here(jobs, job, take);
+    });
+}
+
+fn take_here<T: Send>(
+    jobs: Range<u64>,
+    job: &(dyn Fn(u64) -> T + Sync),
+    take: &mut (dyn FnMut(T) -> bool + Send),
+) {
     let length = usize::try_from(jobs.end - jobs.start).expect("results that memory can hold");
     let places: Vec<Mutex<Option<T>>> = (0..length).map(|_| Mutex::new(None)).collect();
     // Jobs go by a counter, not by parts of the range: values come nearly in order, so that few are held.
@@ -204,46 +219,42 @@ mod tests {
         assert!(all.is_err() && run < 1000, "{run} jobs");
     }
 
-    /// The sum below `count`, by two loops one after the other.
-    fn sum(count: u64) -> u64 {
-        let mut sum = 0;
-        inside(&mut || {
-            for part in 0..2 {
-                take_in_order(0..count, &|job| job, &mut |job| {
-                    sum += part * job;
-                    true
-                });
-            }
-        });
-        sum
-    }
-
     #[test]
-    fn work_within_work_has_no_threads_that_stay() {
+    fn threads_know_what_they_are_at() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build();
         let pool = pool.unwrap();
         let total = AtomicU64::new(0);
-        pool.install(|| {
-            take_in_order(0..200, &|job| sum(100 + job), &mut |sum| {
-                total.fetch_add(sum, Ordering::Relaxed);
-                true
+        let work = || {
+            several(&mut || {
+                assert!(OCCUPIED.get());
+                for _ in 0..2 {
+                    take_in_order(0..200, &|job| (OCCUPIED.get(), job), &mut |(busy, job)| {
+                        assert!(busy && OCCUPIED.get());
+                        total.fetch_add(job, Ordering::Relaxed);
+                        true
+                    });
+                }
             });
-            assert!(!OCCUPIED.get());
-        });
-        let expected: u64 = (100..300).map(|count| count * (count - 1) / 2).sum();
-        assert_eq!(total.into_inner(), expected);
-        // Nothing is left that threads would have to look through.
-        let marks = pool.broadcast(|_| OCCUPIED.get());
-        assert_eq!(marks, [false; 3]);
+        };
+        pool.install(|| take_in_order(0..20, &|_| work(), &mut |()| true));
+        pool.install(work);
+        assert_eq!(total.into_inner(), 21 * 2 * 199 * 100);
+        assert_eq!(pool.broadcast(|_| OCCUPIED.get()), [false; 3]);
     }
 
     #[test]
     fn work_that_panics_is_over() {
+        let over = Over::default();
+        let told = Arc::clone(&over.0);
+        let outcome = catch_unwind(AssertUnwindSafe(|| {
+            let _over = over;
+            panic!("as it should")
+        }));
+        assert!(outcome.is_err() && told.load(Ordering::Relaxed));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
         pool.unwrap().install(|| {
-            let outcome = catch_unwind(|| inside(&mut || panic!("as it should")));
+            let outcome = catch_unwind(|| several(&mut || panic!("as it should")));
             assert!(outcome.is_err() && !OCCUPIED.get());
-            assert_eq!(sum(10), 45);
         });
     }
 }

@@ -54,9 +54,13 @@ impl<V: Value> Stratified<V> {
         let mean: V = sum.map(|sum| sum / number / weight);
         let mut strata = visited.strata.clone();
         for (&place, left_out) in &visited.left_out {
-            strata[place].moments.merge(Moments::from_parts(
+            let (stratum, value) = (&mut strata[place], mean.map(|mean| mean * left_out.mean()));
+            if stratum.moments.count() == 0 {
+                (stratum.low, stratum.high) = (value, value);
+            }
+            stratum.moments.merge(Moments::from_parts(
                 left_out.count(),
-                mean.map(|mean| mean * left_out.mean()),
+                value,
                 mean.map(|mean| mean.abs() * left_out.root()),
             ));
         }

@@ -166,7 +166,12 @@ impl<'a> Walk<'a> {
                 visited.parts += 1;
                 Ok(())
             },
-        )
+        )?;
+        if self.is_complete(visited) {
+            // The last ones may have had no value.
+            visited.strata.resize(self.ends.len(), Stratum::EMPTY);
+        }
+        Ok(())
     }
 
     fn merge<V: Value>(&self, visited: &mut Visited<V>, given: Given<V>) {

@@ -223,16 +223,18 @@ fn what_is_dark_keeps_its_light() {
 /// However near or far points are.
 #[test]
 fn no_distance_loses_light() {
-    for exponent in -30..=37 {
+    // The shares of two are halves; those of more are rounded.
+    let cases = (-30..=37).flat_map(|exponent| [(exponent, 2, 0.0), (exponent, MOST, 1e-5)]);
+    for (exponent, pixels, bound) in cases {
         let size = 10_f32.powi(exponent);
         let group = Group {
-            pixels: MOST,
+            pixels,
             rounds: WIDTH,
             slot: 0,
         };
         let mut traces = Traces::default();
-        traces.clear(MOST * WIDTH);
-        for pixel in 0..MOST {
+        traces.clear(pixels * WIDTH);
+        for pixel in 0..pixels {
             let mut point = diffuse([0.0; 3], Vec3A::Z);
             point.surface.margin = 0.0;
             traces.set_first(group.slot(pixel, 0), point, &ALWAYS);
@@ -242,11 +244,11 @@ fn no_distance_loses_light() {
             traces.end(group.slot(pixel, 0), Vec3A::splat(3.0), 1.0);
         }
         traces.share(&group, &|_| false);
-        for pixel in 0..MOST {
+        for pixel in 0..pixels {
             let slot = group.slot(pixel, 0);
             let value: Vec<_> = traces.values(slot..slot + 1).collect();
             let off = (value[0] - Vec3::splat(3.0)).length();
-            assert!(off < 1e-5, "{size}: {value:?}");
+            assert!(off <= bound, "{size}: {value:?}");
         }
     }
 }

@@ -38,13 +38,14 @@ impl<V: Value> Parts<V> {
 
     /// `None` if a stratum has fewer than two values.
     pub(super) fn of(strata: &[Stratum<V>], weight: f64) -> Option<Self> {
-        let errors = strata
-            .iter()
-            .map(|stratum| Some(stratum.moments.std_error()?.map(|error| error * weight)))
-            .collect::<Option<Vec<V>>>()?;
+        // In one piece: to grow is to wait for other threads that allocate.
+        let mut errors = Vec::with_capacity(strata.len());
+        for stratum in strata {
+            errors.push(stratum.moments.std_error()?.map(|error| error * weight));
+        }
         let largest = errors
             .iter()
-            .fold(V::ZERO, |largest, error| largest.zip(*error, f64::max));
+            .fold(V::ZERO, |largest: V, error| largest.zip(*error, f64::max));
         let mut all = Self {
             largest,
             ..Self::NONE

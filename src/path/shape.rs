@@ -31,6 +31,8 @@ pub use disk::Disk;
 pub use flat::Flat;
 pub(in crate::path) use flat::{Edges, inset, kept_inside};
 pub use mesh::Mesh;
+#[cfg(feature = "simd")]
+pub(in crate::path) use near::lanes::{Rectangle, are_near};
 pub use sphere::Sphere;
 
 /// A surface that rays can hit and whose points can be drawn.

@@ -56,7 +56,7 @@ impl Packet {
         let area = self.table.area(simd, shape);
         let mut drawn = place.density_of_area(origin, *point, area);
         if let Some(near) = &self.near {
-            drawn = near.density(shape, active, origin, drawn);
+            drawn = near.density(shape, (place, area), active, origin, drawn);
         }
         (self.table.radiance(simd, shape), place.chance * drawn)
     }
@@ -103,7 +103,7 @@ impl Packet {
             density: there.density_of_area(here.point, target, area),
         };
         if let Some(near) = &self.near {
-            drawn = near.sample(chosen, active, here.point, [a, b], drawn);
+            drawn = near.sample(chosen, (&there, area), active, here.point, [a, b], drawn);
         }
         let target = drawn.point;
         let own = there.chance * drawn.density;

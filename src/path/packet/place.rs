@@ -11,7 +11,7 @@ use crate::path::shape::Flat;
 /// Room for as many shapes as are swept over: a power of two.
 const MOST: usize = FEW.next_power_of_two();
 
-type Column = [f32; MOST];
+pub(super) type Column = [f32; MOST];
 
 /// What is known of each flat shape.
 #[derive(Debug)]
@@ -32,7 +32,7 @@ pub(super) struct Table {
     part: [u32; MOST],
 }
 
-const NOTHING: Column = [0.0; MOST];
+pub(super) const NOTHING: Column = [0.0; MOST];
 
 impl Table {
     pub(super) const EMPTY: Self = Self {
@@ -121,7 +121,7 @@ impl Table {
     }
 
     #[inline(always)]
-    fn number<S: Simd>(simd: S, column: &Column, shapes: &Row<u32>) -> Real<S> {
+    pub(super) fn number<S: Simd>(simd: S, column: &Column, shapes: &Row<u32>) -> Real<S> {
         let mut row = Row::<f32>::ZERO;
         for (number, &shape) in row.0.iter_mut().zip(&shapes.0) {
             *number = column[shape as usize % MOST];

@@ -398,7 +398,7 @@ fn packets_give_the_bits_of_single_paths_near_a_lamp() {
         view.scene = Scene::new(room(size).unwrap(), NoEnvironment).unwrap();
         let lights = view.scene.lights().shapes();
         let drawn = |shape: &Primitive| match shape {
-            Primitive::Flat(flat) => flat.is_by_solid_angle(),
+            Primitive::Flat(flat) => flat.longest_by_solid_angle().is_some(),
             _ => false,
         };
         assert_eq!(lights.map(drawn).collect::<Vec<_>>(), [near; 2], "{size}");
@@ -531,7 +531,7 @@ fn lights_that_are_asked_for_are_drawn_by_solid_angle() {
         .unwrap();
     let scene: Scene<_, AreaLights, _> = Scene::new(vec![shining], NoEnvironment).unwrap();
     assert!(scene.lights().shapes().all(|shape| match shape {
-        Primitive::Flat(flat) => flat.is_by_solid_angle(),
+        Primitive::Flat(flat) => flat.longest_by_solid_angle().is_some(),
         _ => false,
     }));
 }

@@ -131,10 +131,10 @@ impl Flat {
         self.area * -corner.dot(self.normal) / (squared * squared.sqrt())
     }
 
-    /// Whether it is to be drawn by solid angle where it is near.
+    /// The longest edge, if it is to be drawn by solid angle where it is near.
     #[cfg(feature = "simd")]
-    pub(in crate::path) fn is_by_solid_angle(&self) -> bool {
-        self.outline.is_some()
+    pub(in crate::path) fn longest_by_solid_angle(&self) -> Option<f32> {
+        self.outline.map(Outline::longest)
     }
 
     /// The shape as `from` sees it, if it is to be drawn by solid angle.

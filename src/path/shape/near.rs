@@ -4,6 +4,9 @@ use core::f32::consts::TAU;
 
 use glam::Vec3A;
 
+#[cfg(feature = "simd")]
+pub(super) mod lanes;
+
 use super::Flat;
 use crate::path::frame::{turn, turns};
 
@@ -38,7 +41,7 @@ impl Outline {
 
     /// The longest edge.
     #[inline]
-    fn longest(self) -> f32 {
+    pub(super) fn longest(self) -> f32 {
         match self {
             Self::Rectangle { lengths } => lengths[0].max(lengths[1]),
             Self::Triangle { longest } => longest,

@@ -1,0 +1,131 @@
+//! Rectangles seen from nearby, one a lane, with the bits of single ones.
+
+use core::f32::consts::TAU;
+
+use pulp::Simd;
+
+use super::{LOWEST, SMALLEST};
+use crate::path::frame::lanes::{turn, turns};
+use crate::path::lanes::{Mask, Real, Vector};
+
+/// As the [`near`](super::Outline::near) of shapes with the given middles, areas, heights of `from` above them and longest edges.
+#[inline(always)]
+pub(in crate::path) fn are_near<S: Simd>(
+    to_middle: Vector<S>,
+    area: Real<S>,
+    height: Real<S>,
+    longest: Real<S>,
+) -> Mask<S> {
+    let squared = to_middle.dot(to_middle);
+    let apparent = area * height / (squared * squared.sqrt());
+    apparent.gt(area.all(SMALLEST)) & height.gt(LOWEST * longest)
+}
+
+/// As [`Angle`](super::Angle).
+#[derive(Clone, Copy)]
+struct Angle<S: Simd> {
+    cosine: Real<S>,
+    sine: Real<S>,
+}
+
+impl<S: Simd> Angle<S> {
+    #[inline(always)]
+    fn of_turn(part: Real<S>) -> Self {
+        let [cosine, sine] = turn(part);
+        Self { cosine, sine }
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self {
+            cosine: self.cosine * other.cosine - self.sine * other.sine,
+            sine: self.sine * other.cosine + self.cosine * other.sine,
+        }
+    }
+
+    #[inline(always)]
+    fn radians(self) -> Real<S> {
+        TAU * turns(self.sine, self.cosine)
+    }
+}
+
+/// As [`Rectangle`](super::Rectangle).
+#[derive(Clone, Copy)]
+pub(in crate::path) struct Rectangle<S: Simd> {
+    x: [Real<S>; 2],
+    y: [Real<S>; 2],
+    height: Real<S>,
+    lengths: [Real<S>; 2],
+    b: [Real<S>; 2],
+    left: Real<S>,
+    rest: Angle<S>,
+    solid_angle: Real<S>,
+}
+
+impl<S: Simd> Rectangle<S> {
+    #[inline(always)]
+    pub(in crate::path) fn new(
+        corner: Vector<S>,
+        edges: [Vector<S>; 2],
+        lengths: [Real<S>; 2],
+        height: Real<S>,
+    ) -> Self {
+        let [width, depth] = lengths;
+        let x = corner.dot(edges[0]) / width;
+        let y = corner.dot(edges[1]) / depth;
+        let (x, y) = ([x, x + width], [y, y + depth]);
+        let side = |at: Real<S>| {
+            let length = (at * at + height * height).sqrt();
+            [at / length, height / length]
+        };
+        let ([x0, x1], [y0, y1]) = (x.map(side), y.map(side));
+        let between = |[a, below_a]: [Real<S>; 2], [b, below_b]: [Real<S>; 2], sign: f32| Angle {
+            cosine: sign * (a * b),
+            sine: (below_a * below_a + a * a * (below_b * below_b)).sqrt(),
+        };
+        let near = between(y0, x1, 1.0).plus(between(x1, y1, -1.0));
+        let far = between(y1, x0, 1.0).plus(between(x0, y0, -1.0));
+        Self {
+            x,
+            y,
+            height,
+            lengths,
+            b: [-y0[0], y1[0]],
+            left: y0[1] * y0[1],
+            rest: Angle {
+                sine: -far.sine,
+                ..far
+            },
+            solid_angle: near.plus(far).radians(),
+        }
+    }
+
+    /// Per solid angle, of what is [drawn](Self::sample).
+    #[inline(always)]
+    pub(in crate::path) fn density(&self) -> Real<S> {
+        1.0 / self.solid_angle
+    }
+
+    /// The coordinates along the edges of the points at `u`, in [0, 1].
+    #[inline(always)]
+    pub(in crate::path) fn sample(&self, [u, v]: [Real<S>; 2]) -> [Real<S>; 2] {
+        let (zero, one) = (u.all(0.0), u.all(1.0));
+        let angle = Angle::of_turn(u * (self.solid_angle / TAU)).plus(self.rest);
+        let [b0, b1] = self.b;
+        let f = (angle.cosine * b0 - b1) / angle.sine;
+        let [x0, x1] = self.x;
+        let [y0, y1] = self.y;
+        let x = self.height.copysign(f) / (f * f - self.left).max(zero).sqrt();
+        let x = x.max(x0).min(x1);
+        let squared = x * x + self.height * self.height;
+        let [low, high] = [y0, y1].map(|y| y / (squared + y * y).sqrt());
+        let h = low + v * (high - low);
+        let y = h * (squared / (1.0 - h * h).max(u.all(f32::MIN_POSITIVE))).sqrt();
+        let y = y.max(y0).min(y1);
+        let [width, depth] = self.lengths;
+        [
+            ((x - x0) / width).max(zero).min(one),
+            ((y - y0) / depth).max(zero).min(one),
+        ]
+    }
+}

@@ -33,7 +33,7 @@ pub(in crate::path) use reuse::Keeper;
 
 use boxes::Boxes;
 use near::Near;
-use place::Table;
+use place::{MOST, Table};
 use reuse::Sharing;
 use solids::Solids;
 use sweep::Shapes;
@@ -51,7 +51,7 @@ pub(in crate::path) struct Packet {
     boxes: Boxes,
     lights: AreaLights,
     near: Option<Near>,
-    /// The shape of each emitter.
+    /// The shape of each emitter; of one that is drawn one lane after the other a number that no shape has.
     emitters: Vec<u32>,
     around: Vec3A,
     triangles: bool,
@@ -64,6 +64,8 @@ pub(in crate::path) struct Packet {
     others: bool,
     /// Whether the view is asked for all light of shapes, lane by lane.
     asks_lights: bool,
+    /// The number of such emitters, if there are any beside flat lights.
+    asked: Option<u32>,
     /// Whether it is asked for what is around.
     asks_around: bool,
     arch: pulp::Arch,
@@ -101,7 +103,7 @@ pub(in crate::path) trait Single<U> {
 
 impl Packet {
     /// The scene of the given shapes, if it is one of those. `optics` tells what each of the `parts` does to light, as [`Hit`] numbers them;
-    /// `smooth`, whether laws heed interpolated normals. Without `lights`, flat ones, the view is asked for all light of shapes; without
+    /// `smooth`, whether laws heed interpolated normals. Without `lights`, or if none of them is flat, the view is asked for all light of shapes; without
     /// `around`, the same radiance from everywhere, for what is around, unless that is a sky.
     pub(in crate::path) fn new(
         geometry: &Geometry,
@@ -133,10 +135,13 @@ impl Packet {
             varying: laws().any(Law::varies),
             others: laws().any(|law| !law.is_diffuse()),
             asks_lights: lights.is_none(),
+            asked: None,
             asks_around: around.is_none(),
             arch: pulp::Arch::new(),
         };
-        let mut emitters = Vec::new();
+        // No flat shape has it, and nothing is known of it.
+        let asked = u32::try_from(flats.len()).ok()?;
+        packet.emitters = vec![asked; packet.lights.shapes().count()];
         for ((number, &shape), &divides) in (0_u32..).zip(flats).zip(&sweep.divides) {
             let Primitive::Flat(flat) = &primitives[shape] else {
                 return None;
@@ -151,7 +156,9 @@ impl Packet {
             packet.triangles |= flat.slant != 0.0;
             if let Emitted::Flat(light) = optics.emitted {
                 packet.slanted_lights |= flat.slant != 0.0;
-                emitters.push((light.emitter, number));
+                if let Some(place) = packet.emitters.get_mut(light.emitter as usize) {
+                    *place = number;
+                }
             }
         }
         let first = u32::try_from(flats.len()).ok()?;
@@ -171,9 +178,19 @@ impl Packet {
                 smooth,
             });
         }
-        emitters.sort_unstable();
-        packet.emitters = emitters.into_iter().map(|(_, shape)| shape).collect();
-        packet.near = Near::new(&packet.emitters, &packet.lights);
+        let others = packet.emitters.iter().filter(|&&shape| shape == asked);
+        match others.count() {
+            0 => (),
+            some if some < packet.emitters.len() && flats.len() < MOST => {
+                packet.asked = Some(asked);
+            }
+            _ => {
+                packet.lights = AreaLights::NONE;
+                packet.emitters.clear();
+                packet.asks_lights = true;
+            }
+        }
+        packet.near = Near::new(&packet.emitters, asked, &packet.lights);
         Some(packet)
     }
 
@@ -192,7 +209,7 @@ impl Packet {
         values: &mut [Vec3],
         keeper: Option<Keeper<'_>>,
     ) {
-        let asks = self.asks_lights || self.asks_around;
+        let asks = self.asks_lights || self.asked.is_some() || self.asks_around;
         let constant = !self.others && !self.varying;
         let plain = self.solids.is_none() && constant && !asks && single.sky().is_none();
         if plain {

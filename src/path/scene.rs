@@ -105,24 +105,25 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
         Surfaces::new(objects, instances)?.scene(environment)
     }
 
-    /// The scene for many paths at once, if it is one of those; `in_lanes` tells whether its lights are such as go in lanes.
+    /// The scene for many paths at once, if it is one of those.
     #[cfg(feature = "simd")]
-    fn packed(&self, in_lanes: bool) -> Option<Packet> {
+    fn packed(&self) -> Option<Packet> {
         let around = match self.environment.as_sky() {
             Some(_) => Some(Vec3A::ZERO),
             None => self.environment.constant(),
         };
-        let lights = self.lights.as_area_lights().filter(|_| in_lanes);
+        let lights = self.lights.as_area_lights();
+        let shapes = self.geometry.shapes().len();
         let optics = |part: usize| {
             let owner = self.owners[part];
             let emitted = match (owner.emitter, lights) {
                 (DARK, _) => Emitted::Nothing,
-                (emitter, Some(lights)) => Emitted::Flat(FlatLight {
+                (emitter, Some(lights)) if part < shapes && lights.is_flat(emitter) => Emitted::Flat(FlatLight {
                     emitter,
                     radiance: lights.radiance(emitter),
                     probability: lights.probability(emitter),
                 }),
-                (_, None) => Emitted::Asked,
+                _ => Emitted::Asked,
             };
             Optics {
                 law: Law::of(&self.bsdfs[owner.bsdf as usize]),

@@ -44,6 +44,13 @@ impl AreaLights {
         choices: Vec::new(),
     };
 
+    /// Whether an emitter is flat and shines the same all over.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn is_flat(&self, emitter: u32) -> bool {
+        let Emitter { shape, picture, .. } = &self.emitters[emitter as usize];
+        matches!(shape, Primitive::Flat(_)) && picture.is_none()
+    }
+
     /// The probability with which an emitter is chosen.
     #[cfg(feature = "simd")]
     pub(in crate::path) fn probability(&self, emitter: u32) -> f32 {
@@ -77,6 +84,28 @@ impl AreaLights {
             before,
         } = self.choices[chosen];
         (chosen, ((u - before) / probability).clamp(0.0, 1.0))
+    }
+
+    /// The way to the point that coordinates draw of an emitter.
+    #[inline]
+    pub(in crate::path) fn drawn<D>(
+        &self,
+        chosen: usize,
+        from: &Surface<D>,
+        u: [f32; 2],
+    ) -> Option<Illumination> {
+        let emitter = self.emitters.get(chosen)?;
+        let drawn = emitter.shape.sample_with_density(from.point, u);
+        let (there, density) = (drawn.0, self.choices[chosen].times(drawn.1));
+        let lit = there.normal.dot(from.point - there.point) > 0.0;
+        if !(lit && density > 0.0 && density < f32::MAX) {
+            return None;
+        }
+        Some(Illumination {
+            way: Segment::between(from, &there)?,
+            weight: emitter.radiance_at(&there) * density.recip(),
+            density,
+        })
     }
 }
 
@@ -113,20 +142,7 @@ impl Light for AreaLights {
     fn sample<D, S: Sampler>(&self, from: &Surface<D>, u: &mut S) -> Option<Illumination> {
         let [a, b] = u.next_2d();
         let (chosen, a) = self.choose(a);
-        let emitter = self.emitters.get(chosen)?;
-        let drawn = emitter
-            .shape
-            .sample_with_density(from.point, singles([a, b]));
-        let (there, density) = (drawn.0, self.choices[chosen].times(drawn.1));
-        let lit = there.normal.dot(from.point - there.point) > 0.0;
-        if !(lit && density > 0.0 && density < f32::MAX) {
-            return None;
-        }
-        Some(Illumination {
-            way: Segment::between(from, &there)?,
-            weight: emitter.radiance_at(&there) * density.recip(),
-            density,
-        })
+        self.drawn(chosen, from, singles([a, b]))
     }
 
     #[inline]

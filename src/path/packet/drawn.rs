@@ -187,7 +187,7 @@ impl Scatters {
 pub(super) struct Draws {
     /// The shapes that are chosen among flat lights.
     pub(super) chosen: Row<u32>,
-    /// Light of the shapes and of what is around, where the view is asked for it.
+    /// Light of shapes and of what is around that is drawn one lane after the other.
     pub(super) lamp: Option<Illuminated>,
     pub(super) around: Option<Illuminated>,
     pub(super) sky: Option<Seen>,

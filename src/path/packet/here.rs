@@ -71,6 +71,13 @@ impl<S: Simd> Here<'_, S> {
         chance.ge(chance.all(0.0))
     }
 
+    /// Where the view is asked what is emitted, if anything is.
+    #[inline(always)]
+    pub(super) fn is_asked(&self) -> Mask<S> {
+        let chance = self.place.chance;
+        chance.eq(chance.all(0.0))
+    }
+
     /// Where the outer side is towards `origin`.
     #[inline(always)]
     pub(super) fn faces(&self, origin: Vector<S>) -> Mask<S> {

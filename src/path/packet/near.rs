@@ -37,8 +37,9 @@ struct Seen<S: Simd> {
 }
 
 impl Near {
-    /// `None` if all lights are drawn from the area, wherever they are. `numbers` are those of the shapes of the lights.
-    pub(super) fn new(numbers: &[u32], lights: &AreaLights) -> Option<Self> {
+    /// `None` if all lights are drawn from the area, wherever they are. `numbers` are those of the shapes of the lights, `asked` that of
+    /// lights that are none of them.
+    pub(super) fn new(numbers: &[u32], asked: u32, lights: &AreaLights) -> Option<Self> {
         let mut near = Self {
             outline: NOTHING,
             lengths: [NOTHING; 2],
@@ -50,6 +51,9 @@ impl Near {
             let Primitive::Flat(flat) = shape else {
                 continue;
             };
+            if number == asked {
+                continue;
+            }
             let Some(longest) = flat.longest_by_solid_angle() else {
                 continue;
             };

@@ -9,7 +9,7 @@ use crate::path::lanes::{Real, Row, Vector, WIDEST};
 use crate::path::shape::Flat;
 
 /// Room for as many shapes as are swept over: a power of two.
-const MOST: usize = FEW.next_power_of_two();
+pub(super) const MOST: usize = FEW.next_power_of_two();
 
 pub(super) type Column = [f32; MOST];
 

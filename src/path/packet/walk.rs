@@ -151,6 +151,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         let others = !PLAIN && packet.others;
         let (asks_lights, asks_around) =
             (!PLAIN && packet.asks_lights, !PLAIN && packet.asks_around);
+        let some_asked = !PLAIN && packet.asked.is_some();
         let sky = self.sky.filter(|_| !PLAIN);
         let (zero, one) = (Real::splat(simd, 0.0), Real::splat(simd, 1.0));
         let origin = Vector::load(simd, &state.origin);
@@ -214,7 +215,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
 
         let here = packet.here(simd, &hit, solids.as_ref());
         // What the view is asked about these points.
-        let asks = others || asks_lights || asks_around;
+        let asks = others || asks_lights || some_asked || asks_around;
         let varying = !PLAIN && packet.varying;
         let hits = (asks || varying).then(|| here.hits(&packet.table, &state.direction));
         // Emitted light, met by a direction that was drawn at the surface before.
@@ -223,13 +224,21 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             lit = lit & here.faces(origin);
         }
         if lit.any() {
-            let (emitted, other) = match &hits {
-                Some(hits) if asks_lights => {
-                    let light = hits.emitted(self.single, &state.origin, &lit.row(simd));
-                    (light.weight(simd), light.density(simd))
-                }
-                _ => packet.emitted(simd, &here, origin, lit),
+            let asked = match (asks_lights, some_asked) {
+                (true, _) => Some(lit),
+                (false, true) => Some(lit & here.is_asked()),
+                (false, false) => None,
             };
+            let (mut emitted, mut other) = match asked {
+                Some(_) if asks_lights => (Vector::splat(simd, Vec3A::ZERO), zero),
+                Some(asked) => packet.emitted(simd, &here, origin, lit & !asked),
+                None => packet.emitted(simd, &here, origin, lit),
+            };
+            if let (Some(asked), Some(hits)) = (asked, &hits) {
+                let light = hits.emitted(self.single, &state.origin, &asked.row(simd));
+                emitted = asked.choose(light.weight(simd), emitted);
+                other = asked.select(light.density(simd), other);
+            }
             let sum = radiance + throughput * emitted * power(density, other);
             radiance = lit.choose(sum, radiance);
         }
@@ -288,7 +297,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
 
         let mut draws = Draws {
             chosen: packet.first_light(),
-            lamp: asks_lights.then_some(Illuminated::NONE),
+            lamp: (asks_lights || some_asked).then_some(Illuminated::NONE),
             around: asks_around.then_some(Illuminated::NONE),
             sky: None,
             scattered: others.then_some(Scatters::NONE),

@@ -20,7 +20,8 @@ pub(crate) struct Surfaces<B> {
     pub(super) owners: Vec<Owner>,
     pub(super) bsdfs: Vec<B>,
     pub(super) emitters: Vec<Emitter>,
-    /// Whether paths go many at once, and all lights are such as are drawn in lanes then, unless their type is not.
+    /// Whether paths go many at once, and all lights are such as are drawn in lanes then, unless their type is not: those that are not are drawn
+    /// one lane after the other, by solid angle, which takes little time beside it.
     pub(super) lights_in_lanes: bool,
 }
 
@@ -94,7 +95,7 @@ impl<B: Bsdf> Surfaces<B> {
         };
         #[cfg(feature = "simd")]
         if scene.geometry.sweep().is_some() {
-            scene.packet = scene.packed(in_lanes).map(Box::new);
+            scene.packet = scene.packed().map(Box::new);
         }
         Ok(scene)
     }

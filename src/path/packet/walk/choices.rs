@@ -4,7 +4,7 @@ use pulp::Simd;
 
 use super::{State, Walk};
 use crate::Sampler;
-use crate::path::frame::single;
+use crate::path::frame::{single, singles};
 use crate::path::lanes::{Mask, Real, Row, WIDEST};
 use crate::path::packet::drawn::{Draws, Hits};
 use crate::path::packet::optics::{DELTA, OTHER};
@@ -32,11 +32,17 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             if kind != DELTA {
                 if lit {
                     let [a, b] = sampler.next_2d();
-                    let (shape, a) = self.packet.choose(a);
+                    let (light, a) = self.packet.lights.choose(a);
+                    let (shape, u_of_light) = (self.packet.emitters[light], singles([a, b]));
                     draws.chosen.0[lane] = shape;
-                    (u[0].0[lane], u[1].0[lane]) = (single(a), single(b));
-                }
-                if let (Some(hits), Some(lamp)) = (hits, &mut draws.lamp) {
+                    [u[0].0[lane], u[1].0[lane]] = u_of_light;
+                    if let (Some(hits), Some(lamp)) = (hits, &mut draws.lamp)
+                        && self.packet.asked == Some(shape)
+                    {
+                        let from = hits.hit(lane).surface;
+                        lamp.set(lane, self.packet.lights.drawn(light, &from, u_of_light));
+                    }
+                } else if let (Some(hits), Some(lamp)) = (hits, &mut draws.lamp) {
                     lamp.set(lane, self.single.lamp(&hits.hit(lane), sampler));
                 }
                 if let (Some(hits), Some(around)) = (hits, &mut draws.around) {

@@ -4,7 +4,7 @@ use pulp::Simd;
 
 use super::Packet;
 use super::here::Here;
-use super::near::Drawn;
+use super::near::{Drawn, Lights};
 use crate::path::gamma;
 use crate::path::lanes::{Mask, Real, Row, Vector};
 
@@ -56,7 +56,17 @@ impl Packet {
         let area = self.table.area(simd, shape);
         let mut drawn = place.density_of_area(origin, *point, area);
         if let Some(near) = &self.near {
-            drawn = near.density(shape, (place, area), active, origin, drawn);
+            let lights = Lights {
+                shapes: shape,
+                active: active.row(simd),
+                from: origin.rows(),
+            };
+            let mut rows = Drawn {
+                point: [Row::<f32>::ZERO; 3],
+                density: drawn.row(),
+            };
+            self.draw_near(near, &lights, None, &mut rows);
+            drawn = Real::load(simd, &rows.density);
         }
         (self.table.radiance(simd, shape), place.chance * drawn)
     }
@@ -97,16 +107,23 @@ impl Packet {
         } else {
             (a, b)
         };
-        let target = there.at(s, t);
-        let mut drawn = Drawn {
-            point: target,
-            density: there.density_of_area(here.point, target, area),
-        };
+        let mut target = there.at(s, t);
+        let mut density = there.density_of_area(here.point, target, area);
         if let Some(near) = &self.near {
-            drawn = near.sample(chosen, (&there, area), active, here.point, [a, b], drawn);
+            let lights = Lights {
+                shapes: chosen,
+                active: active.row(simd),
+                from: here.point.rows(),
+            };
+            let mut rows = Drawn {
+                point: target.rows(),
+                density: density.row(),
+            };
+            self.draw_near(near, &lights, Some(&[a.row(), b.row()]), &mut rows);
+            target = Vector::load(simd, &rows.point);
+            density = Real::load(simd, &rows.density);
         }
-        let target = drawn.point;
-        let own = there.chance * drawn.density;
+        let own = there.chance * density;
         let toward = target - here.point;
         let start = here.place.leave(here.point, toward);
         let way = there.leave(target, -toward) - start;

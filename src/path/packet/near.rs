@@ -1,9 +1,10 @@
 //! Lights that are drawn by solid angle where they are near: rectangles in lanes, triangles one lane after the other.
 
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
-use super::place::{Column, NOTHING, Place, Table};
-use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
+use super::Packet;
+use super::place::{Column, NOTHING, Table};
+use crate::path::lanes::{Real, Row, Vector, WIDEST};
 use crate::path::light::AreaLights;
 use crate::path::shape::{Flat, Primitive, Rectangle, are_near};
 
@@ -22,18 +23,17 @@ const RECTANGLE: f32 = 1.0;
 const TRIANGLE: f32 = 2.0;
 
 /// A point of a light a lane, and its density per solid angle given the light.
-pub(super) struct Drawn<S: Simd> {
-    pub(super) point: Vector<S>,
-    pub(super) density: Real<S>,
+pub(super) struct Drawn {
+    pub(super) point: [Row<f32>; 3],
+    pub(super) density: Row<f32>,
 }
 
-/// The lights of some lanes, as their points see them.
-struct Seen<S: Simd> {
-    /// Which are rectangles that are near, and which triangles.
-    rectangles: Mask<S>,
-    triangles: Mask<S>,
-    corner: Vector<S>,
-    height: Real<S>,
+/// A light a lane, and the point that sees it.
+pub(super) struct Lights<'a> {
+    pub(super) shapes: &'a Row<u32>,
+    /// 1 in the lanes with a light, 0 in the others.
+    pub(super) active: Row<f32>,
+    pub(super) from: [Row<f32>; 3],
 }
 
 impl Near {
@@ -48,12 +48,9 @@ impl Near {
         };
         let mut any = false;
         for (&number, shape) in numbers.iter().zip(lights.shapes()) {
-            let Primitive::Flat(flat) = shape else {
+            let (Primitive::Flat(flat), true) = (shape, number != asked) else {
                 continue;
             };
-            if number == asked {
-                continue;
-            }
             let Some(longest) = flat.longest_by_solid_angle() else {
                 continue;
             };
@@ -73,123 +70,109 @@ impl Near {
         }
         any.then_some(near)
     }
+}
 
-    /// The lights `shapes`, which are at `places`, as `from` sees them.
-    #[inline(always)]
-    fn seen<S: Simd>(
+impl Packet {
+    /// Where lights are near, changes what is drawn from their areas: the density, and with `u` the points.
+    ///
+    /// A function of its own, since most scenes have no such lights, and their loop gets shorter.
+    #[inline(never)]
+    pub(super) fn draw_near(
         &self,
-        shapes: &Row<u32>,
-        (place, area): (&Place<S>, Real<S>),
-        active: Mask<S>,
-        from: Vector<S>,
-    ) -> Seen<S> {
-        let simd = area.simd();
-        let outline = Table::number(simd, &self.outline, shapes);
-        let longest = Table::number(simd, &self.longest, shapes);
+        near: &Near,
+        lights: &Lights<'_>,
+        u: Option<&[Row<f32>; 2]>,
+        drawn: &mut Drawn,
+    ) {
+        self.arch.dispatch(Look {
+            near,
+            table: &self.table,
+            lights,
+            u,
+            drawn,
+        });
+    }
+}
+
+/// A look at the lights of all lanes.
+struct Look<'a> {
+    near: &'a Near,
+    table: &'a Table,
+    lights: &'a Lights<'a>,
+    u: Option<&'a [Row<f32>; 2]>,
+    drawn: &'a mut Drawn,
+}
+
+impl WithSimd for Look<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let (near, shapes) = (self.near, self.lights.shapes);
+        let from = Vector::load(simd, &self.lights.from);
+        let active = Real::load(simd, &self.lights.active).gt(Real::splat(simd, 0.0));
+        let place = self.table.places(simd, shapes);
+        let area = self.table.area(simd, shapes);
+        let outline = Table::number(simd, &near.outline, shapes);
+        let longest = Table::number(simd, &near.longest, shapes);
         let triangle = outline.eq(area.all(TRIANGLE));
         let corner = place.corner - from;
         let height = -corner.dot(place.normal);
         let middle = triangle.select(area.all(1.0 / 3.0), area.all(0.5));
         let to_middle = corner + (place.first_edge + place.second_edge) * middle;
-        let near = active & are_near(to_middle, area, height, longest);
-        Seen {
-            rectangles: near & outline.eq(area.all(RECTANGLE)),
-            triangles: near & triangle,
-            corner,
-            height,
-        }
-    }
-
-    #[inline(always)]
-    fn rectangles<S: Simd>(
-        &self,
-        shapes: &Row<u32>,
-        place: &Place<S>,
-        seen: &Seen<S>,
-    ) -> Rectangle<S> {
-        let simd = seen.height.simd();
-        let lengths = [0, 1].map(|edge| Table::number(simd, &self.lengths[edge], shapes));
-        let edges = [place.first_edge, place.second_edge];
-        Rectangle::new(seen.corner, edges, lengths, seen.height)
-    }
-
-    /// The triangles of the lanes that have one.
-    #[inline(always)]
-    fn triangles<S: Simd>(
-        &self,
-        shapes: &Row<u32>,
-        seen: &Seen<S>,
-    ) -> impl Iterator<Item = (usize, &Flat)> {
-        let lanes = seen.triangles.row(seen.height.simd());
-        let lanes = (0..WIDEST).filter(move |&lane| lanes.0[lane] > 0.0);
-        lanes.filter_map(|lane| Some((lane, self.triangles[shapes.0[lane] as usize].as_ref()?)))
-    }
-
-    /// The points that `u` draws from the lights `shapes`, which are at `places`, as `from` sees them: `far` but where they are near.
-    #[inline(always)]
-    pub(super) fn sample<S: Simd>(
-        &self,
-        shapes: &Row<u32>,
-        places: (&Place<S>, Real<S>),
-        active: Mask<S>,
-        from: Vector<S>,
-        u: [Real<S>; 2],
-        far: Drawn<S>,
-    ) -> Drawn<S> {
-        let seen = self.seen(shapes, places, active, from);
-        let (place, mut drawn) = (places.0, far);
-        if seen.rectangles.any() {
-            let rectangle = self.rectangles(shapes, place, &seen);
-            let [s, t] = rectangle.sample(u);
-            drawn = Drawn {
-                point: seen.rectangles.choose(place.at(s, t), drawn.point),
-                density: (seen.rectangles).select(rectangle.density(), drawn.density),
-            };
-        }
-        if seen.triangles.any() {
-            let simd = drawn.density.simd();
-            let (from, [a, b]) = (from.rows(), u.map(Real::row));
-            let (mut point, mut density) = (drawn.point.rows(), drawn.density.row());
-            for (lane, flat) in self.triangles(shapes, &seen) {
-                let u = [a.0[lane], b.0[lane]];
-                if let Some((there, own)) = flat.sample_near(Row::vector(&from, lane), u) {
-                    Row::set_vector(&mut point, lane, there);
-                    density.0[lane] = own;
-                }
+        let active = active & are_near(to_middle, area, height, longest);
+        let rectangles = active & outline.eq(area.all(RECTANGLE));
+        let drawn = self.drawn;
+        if rectangles.any() {
+            let [width, depth] = &near.lengths;
+            let rectangle = Rectangle::new(
+                corner,
+                [place.first_edge, place.second_edge],
+                [
+                    Table::number(simd, width, shapes),
+                    Table::number(simd, depth, shapes),
+                ],
+                height,
+            );
+            let far = Real::load(simd, &drawn.density);
+            let density = rectangles.select(rectangle.density(), far);
+            density.store(&mut drawn.density);
+            if let Some([a, b]) = self.u {
+                let [s, t] = rectangle.sample([Real::load(simd, a), Real::load(simd, b)]);
+                let far = Vector::load(simd, &drawn.point);
+                let point = rectangles.choose(place.at(s, t), far);
+                point.store(&mut drawn.point);
             }
-            drawn = Drawn {
-                point: Vector::load(simd, &point),
-                density: Real::load(simd, &density),
-            };
         }
-        drawn
+        let triangles = active & triangle;
+        if triangles.any() {
+            near.draw_triangles(self.lights, &triangles.row(simd), self.u, drawn);
+        }
     }
+}
 
-    /// The densities with which points of the lights `shapes` are drawn, as `from` sees them: `far` but where they are near.
-    #[inline(always)]
-    pub(super) fn density<S: Simd>(
+impl Near {
+    #[inline(never)]
+    fn draw_triangles(
         &self,
-        shapes: &Row<u32>,
-        places: (&Place<S>, Real<S>),
-        active: Mask<S>,
-        from: Vector<S>,
-        far: Real<S>,
-    ) -> Real<S> {
-        let seen = self.seen(shapes, places, active, from);
-        let mut density = far;
-        if seen.rectangles.any() {
-            let rectangle = self.rectangles(shapes, places.0, &seen);
-            density = seen.rectangles.select(rectangle.density(), density);
-        }
-        if seen.triangles.any() {
-            let (from, mut row) = (from.rows(), density.row());
-            for (lane, flat) in self.triangles(shapes, &seen) {
-                if let Some(own) = flat.density_near(Row::vector(&from, lane)) {
-                    row.0[lane] = own;
+        lights: &Lights<'_>,
+        active: &Row<f32>,
+        u: Option<&[Row<f32>; 2]>,
+        drawn: &mut Drawn,
+    ) {
+        for lane in (0..WIDEST).filter(|&lane| active.0[lane] > 0.0) {
+            let Some(flat) = &self.triangles[lights.shapes.0[lane] as usize] else {
+                continue;
+            };
+            let from = Row::vector(&lights.from, lane);
+            if let Some([a, b]) = u {
+                if let Some((point, density)) = flat.sample_near(from, [a.0[lane], b.0[lane]]) {
+                    Row::set_vector(&mut drawn.point, lane, point);
+                    drawn.density.0[lane] = density;
                 }
+            } else if let Some(density) = flat.density_near(from) {
+                drawn.density.0[lane] = density;
             }
-            density = Real::load(far.simd(), &row);
         }
-        density
     }
 }

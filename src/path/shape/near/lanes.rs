@@ -49,6 +49,26 @@ impl<S: Simd> Angle<S> {
     }
 }
 
+/// Sine and cosine of the angle between the plane through the origin and a side, and the rectangle's plane.
+#[inline(always)]
+fn side<S: Simd>(at: Real<S>, height: Real<S>) -> [Real<S>; 2] {
+    let length = (at * at + height * height).sqrt();
+    [at / length, height / length]
+}
+
+/// The angle between two such planes.
+#[inline(always)]
+fn between<S: Simd>(
+    [a, below_a]: [Real<S>; 2],
+    [b, below_b]: [Real<S>; 2],
+    sign: f32,
+) -> Angle<S> {
+    Angle {
+        cosine: sign * (a * b),
+        sine: (below_a * below_a + a * a * (below_b * below_b)).sqrt(),
+    }
+}
+
 /// As [`Rectangle`](super::Rectangle).
 #[derive(Clone, Copy)]
 pub(in crate::path) struct Rectangle<S: Simd> {
@@ -74,15 +94,8 @@ impl<S: Simd> Rectangle<S> {
         let x = corner.dot(edges[0]) / width;
         let y = corner.dot(edges[1]) / depth;
         let (x, y) = ([x, x + width], [y, y + depth]);
-        let side = |at: Real<S>| {
-            let length = (at * at + height * height).sqrt();
-            [at / length, height / length]
-        };
-        let ([x0, x1], [y0, y1]) = (x.map(side), y.map(side));
-        let between = |[a, below_a]: [Real<S>; 2], [b, below_b]: [Real<S>; 2], sign: f32| Angle {
-            cosine: sign * (a * b),
-            sine: (below_a * below_a + a * a * (below_b * below_b)).sqrt(),
-        };
+        let [x0, x1] = [side(x[0], height), side(x[1], height)];
+        let [y0, y1] = [side(y[0], height), side(y[1], height)];
         let near = between(y0, x1, 1.0).plus(between(x1, y1, -1.0));
         let far = between(y1, x0, 1.0).plus(between(x0, y0, -1.0));
         Self {
@@ -118,7 +131,8 @@ impl<S: Simd> Rectangle<S> {
         let x = self.height.copysign(f) / (f * f - self.left).max(zero).sqrt();
         let x = x.max(x0).min(x1);
         let squared = x * x + self.height * self.height;
-        let [low, high] = [y0, y1].map(|y| y / (squared + y * y).sqrt());
+        let low = y0 / (squared + y0 * y0).sqrt();
+        let high = y1 / (squared + y1 * y1).sqrt();
         let h = low + v * (high - low);
         let y = h * (squared / (1.0 - h * h).max(u.all(f32::MIN_POSITIVE))).sqrt();
         let y = y.max(y0).min(y1);

@@ -126,6 +126,21 @@ pub struct Illumination {
     pub density: f32,
 }
 
+impl Illumination {
+    /// Of a source without size the irradiance on a surface that faces it, if there is any.
+    #[inline]
+    fn without_size(weight: Vec3A, way: impl FnOnce() -> Option<Segment>) -> Option<Self> {
+        if weight == Vec3A::ZERO {
+            return None;
+        }
+        Some(Self {
+            way: way()?,
+            weight,
+            density: f32::INFINITY,
+        })
+    }
+}
+
 /// What a source does for a point that sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emission {

@@ -361,7 +361,9 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
                 run.share.points.fill(run.indices.start, 0..width(run), own);
                 free = others;
             }
-            let (mut samplers, mut pixels) = (Vec::new(), Vec::new());
+            let points = runs.iter().map(Run::length).sum();
+            let mut samplers = Vec::with_capacity(points);
+            let mut pixels = Vec::with_capacity(points);
             let mut left = &*room;
             for run in runs {
                 let width = width(run) as usize;

@@ -27,14 +27,21 @@ impl DirectionalLight {
         })
     }
 
-    /// The light that arrives at the surface `from` if nothing is in the way.
+    /// The light that arrives at the surface `from` if nothing is in the way; `None` if none does.
     #[inline]
-    pub fn illuminate<D>(&self, from: &Surface<D>) -> Illumination {
-        Illumination {
-            way: Segment::along(from, self.toward),
-            weight: self.irradiance,
-            density: f32::INFINITY,
-        }
+    pub fn illuminate<D>(&self, from: &Surface<D>) -> Option<Illumination> {
+        Illumination::without_size(self.arriving(), || Some(self.way(from)))
+    }
+
+    #[inline]
+    pub(super) fn way<D>(&self, from: &Surface<D>) -> Segment {
+        Segment::along(from, self.toward)
+    }
+
+    /// The irradiance that a surface would have that faces it.
+    #[inline]
+    pub(super) fn arriving(&self) -> Vec3A {
+        self.irradiance
     }
 }
 

@@ -26,10 +26,21 @@ impl PointLight {
         })
     }
 
-    /// The light that arrives at the surface `from` if nothing is in the way.
+    /// The light that arrives at the surface `from` if nothing is in the way; `None` if none does.
     #[inline]
     pub fn illuminate<D>(&self, from: &Surface<D>) -> Option<Illumination> {
-        from_point(from, self.position, self.intensity)
+        Illumination::without_size(self.arriving(from.point), || self.way(from))
+    }
+
+    /// The irradiance that a surface at `point` would have that faces it.
+    #[inline]
+    pub(super) fn arriving(&self, point: Vec3A) -> Vec3A {
+        from_point(point, self.position, self.intensity)
+    }
+
+    #[inline]
+    pub(super) fn way<D>(&self, from: &Surface<D>) -> Option<Segment> {
+        Segment::to_point(from, self.position)
     }
 }
 
@@ -47,22 +58,15 @@ pub(super) fn place(position: [f32; 3]) -> Result<Vec3A, Error> {
     }
 }
 
-/// The light from a point with the given intensity towards the surface.
+/// What arrives at a point from another one, which has the given intensity towards it.
 #[inline]
-pub(super) fn from_point<D>(
-    from: &Surface<D>,
-    position: Vec3A,
-    intensity: Vec3A,
-) -> Option<Illumination> {
-    let squared = (position - from.point).length_squared();
+pub(super) fn from_point(point: Vec3A, position: Vec3A, intensity: Vec3A) -> Vec3A {
+    let squared = (position - point).length_squared();
     let weight = intensity / squared;
     // A surface at the point itself, or so near that nothing finite can be said, is not lit.
-    if !(squared > 0.0 && weight.is_finite()) {
-        return None;
+    if squared > 0.0 && weight.is_finite() {
+        weight
+    } else {
+        Vec3A::ZERO
     }
-    Some(Illumination {
-        way: Segment::to_point(from, position)?,
-        weight,
-        density: f32::INFINITY,
-    })
 }

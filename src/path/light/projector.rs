@@ -9,7 +9,7 @@ use super::directional::direction;
 use super::point::{from_point, place};
 use super::slide::Slide;
 use crate::Error;
-use crate::path::Surface;
+use crate::path::{Segment, Surface};
 use crate::path::texture::Texture;
 
 /// A point that throws a picture into a pyramid: the reverse of a [`Pinhole`](crate::path::sensor::Pinhole) camera.
@@ -51,21 +51,32 @@ impl ProjectorLight {
         })
     }
 
-    /// The light that arrives at the surface `from` if nothing is in the way.
+    /// The light that arrives at the surface `from` if nothing is in the way; `None` if none does.
     #[inline]
     pub fn illuminate<D>(&self, from: &Surface<D>) -> Option<Illumination> {
-        let toward = (from.point - self.position).try_normalize()?;
+        Illumination::without_size(self.arriving(from.point), || self.way(from))
+    }
+
+    #[inline]
+    pub(super) fn way<D>(&self, from: &Surface<D>) -> Option<Segment> {
+        Segment::to_point(from, self.position)
+    }
+
+    /// The irradiance that a surface at `point` would have that faces it.
+    #[inline]
+    pub(super) fn arriving(&self, point: Vec3A) -> Vec3A {
+        let toward = (point - self.position).normalize_or_zero();
         let cosine = self.axis.dot(toward);
         if !(cosine > 0.0) {
-            return None;
+            return Vec3A::ZERO;
         }
         let place = self.slide.place(toward);
         let within = place.cmpge(Vec2::ZERO).all() && place.cmple(Vec2::ONE).all();
         if !within {
-            return None;
+            return Vec3A::ZERO;
         }
         // As the pyramid widens, so the intensity falls.
         let intensity = self.slide.color(place) * (PI * self.scale / (cosine * cosine * cosine));
-        from_point(from, self.position, intensity)
+        from_point(point, self.position, intensity)
     }
 }

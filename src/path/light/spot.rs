@@ -7,7 +7,7 @@ use super::point::{from_point, place};
 use super::slide::Slide;
 use crate::Error;
 use crate::path::texture::Texture;
-use crate::path::{Surface, color};
+use crate::path::{Segment, Surface, color};
 
 /// A point that shines into a cone: with full intensity near the axis, from there falling linearly with the angle.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,13 +82,24 @@ impl SpotLight {
         Ok(self)
     }
 
-    /// The light that arrives at the surface `from` if nothing is in the way.
+    /// The light that arrives at the surface `from` if nothing is in the way; `None` if none does.
     #[inline]
     pub fn illuminate<D>(&self, from: &Surface<D>) -> Option<Illumination> {
-        let toward = (from.point - self.position).try_normalize()?;
+        Illumination::without_size(self.arriving(from.point), || self.way(from))
+    }
+
+    #[inline]
+    pub(super) fn way<D>(&self, from: &Surface<D>) -> Option<Segment> {
+        Segment::to_point(from, self.position)
+    }
+
+    /// The irradiance that a surface at `point` would have that faces it.
+    #[inline]
+    pub(super) fn arriving(&self, point: Vec3A) -> Vec3A {
+        let toward = (point - self.position).normalize_or_zero();
         let cosine = self.axis.dot(toward);
         if cosine <= self.cutoff_cosine {
-            return None;
+            return Vec3A::ZERO;
         }
         let falloff = if cosine >= self.full_cosine {
             1.0
@@ -99,6 +110,6 @@ impl SpotLight {
         if let Some(slide) = &self.slide {
             intensity *= slide.color(slide.place(toward));
         }
-        from_point(from, self.position, intensity)
+        from_point(point, self.position, intensity)
     }
 }

@@ -6,7 +6,7 @@ use super::{
     Constant, DirectionalLight, Emission, Environment, Illumination, PointLight, ProjectorLight,
     Sky, SpotLight,
 };
-use crate::path::{Surface, color};
+use crate::path::{Segment, Surface, color};
 use crate::{Error, Sampler};
 
 /// A source of light without size.
@@ -23,14 +23,31 @@ pub enum Source {
 }
 
 impl Source {
-    /// The light that arrives at the surface `from` if nothing is in the way.
+    /// The light that arrives at the surface `from` if nothing is in the way; `None` if none does.
     #[inline]
     pub fn illuminate<D>(&self, from: &Surface<D>) -> Option<Illumination> {
+        Illumination::without_size(self.arriving(from.point), || self.way(from))
+    }
+
+    /// The irradiance that a surface at `point` would have that faces it.
+    #[inline]
+    fn arriving(&self, point: Vec3A) -> Vec3A {
         match self {
-            Self::Point(light) => light.illuminate(from),
-            Self::Spot(light) => light.illuminate(from),
-            Self::Directional(light) => Some(light.illuminate(from)),
-            Self::Projector(light) => light.illuminate(from),
+            Self::Point(light) => light.arriving(point),
+            Self::Spot(light) => light.arriving(point),
+            Self::Directional(light) => light.arriving(),
+            Self::Projector(light) => light.arriving(point),
+        }
+    }
+
+    /// The way to it.
+    #[inline]
+    fn way<D>(&self, from: &Surface<D>) -> Option<Segment> {
+        match self {
+            Self::Point(light) => light.way(from),
+            Self::Spot(light) => light.way(from),
+            Self::Directional(light) => Some(light.way(from)),
+            Self::Projector(light) => light.way(from),
         }
     }
 }
@@ -91,29 +108,26 @@ impl Surroundings {
     #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
     fn choose<D>(&self, from: &Surface<D>, mut u: f64) -> Option<Illumination> {
         // One pass: each source takes the place of the one so far with the probability of its share in the sum so far.
-        let mut chosen: Option<(Illumination, f64)> = None;
+        let mut chosen = None;
         let mut sum = 0.0;
         for source in &self.sources {
-            let Some(light) = source.illuminate(from) else {
-                continue;
-            };
-            let worth = color::luminance(Vec3::from(light.weight));
+            let weight = source.arriving(from.point);
+            let worth = color::luminance(Vec3::from(weight));
             if !(worth > 0.0) {
                 continue;
             }
+            let before = sum;
             sum += worth;
-            let share = worth / sum;
-            if u < share {
-                chosen = Some((light, worth));
-                u /= share;
+            let part = u * sum;
+            if part < worth || before == 0.0 {
+                chosen = Some((source, weight, worth));
+                u = part / worth;
             } else {
-                u = (u - share) / (1.0 - share);
+                u = (part - worth) / before;
             }
         }
-        chosen.map(|(light, worth)| Illumination {
-            weight: light.weight * (sum / worth) as f32,
-            ..light
-        })
+        let (source, weight, worth) = chosen?;
+        Illumination::without_size(weight * (sum / worth) as f32, || source.way(from))
     }
 }
 

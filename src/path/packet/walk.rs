@@ -390,18 +390,11 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         let size = cosine.abs();
         let mut other = FRAC_1_PI * size;
         let mut value = at.albedo * (FRAC_1_PI * size);
-        let mut seen = (cosine * at.facing).gt(zero);
-        if let Some(hits) = at.hits {
-            let asked = lamp.active & at.other;
-            if asked.any() {
-                let into = lamp.into.rows();
-                let scatterings = hits.evaluate(self.single, &into, &asked.row(simd));
-                value = at.other.choose(scatterings.weight(simd), value);
-                other = at.other.select(scatterings.density(simd), other);
-            }
+        let mut seen = (cosine * at.facing).gt(zero) & other.gt(zero);
+        if at.hits.is_some() {
             seen = seen | at.other;
         }
-        let active = lamp.active & seen & other.gt(zero);
+        let active = lamp.active & seen;
         if !active.any() {
             return radiance;
         }
@@ -409,7 +402,18 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             || self.single.geometry(),
             (lamp.start, lamp.into, lamp.limit),
         );
-        let visible = (self.packet).sees::<S, PLAIN>(between, geometry, active, ways);
+        let mut visible = (self.packet).sees::<S, PLAIN>(between, geometry, active, ways);
+        // Other laws take their time, and are asked for light that arrives alone.
+        if let Some(hits) = at.hits {
+            let asked = visible & at.other;
+            if asked.any() {
+                let into = lamp.into.rows();
+                let scatterings = hits.evaluate(self.single, &into, &asked.row(simd));
+                value = at.other.choose(scatterings.weight(simd), value);
+                other = at.other.select(scatterings.density(simd), other);
+                visible = visible & other.gt(zero);
+            }
+        }
         let sum = throughput * value * lamp.weight * power(lamp.density, other);
         visible.choose(radiance + sum, radiance)
     }

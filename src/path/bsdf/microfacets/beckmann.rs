@@ -35,7 +35,11 @@ fn erf(x: f32, gauss: f32) -> f32 {
         0.254_829_6,
     ];
     let t = 1.0 / (1.0 + 0.327_591_1 * x);
-    1.0 - t * TERMS.into_iter().fold(0.0, |sum, term| sum * t + term) * gauss
+    // In pairs, which do not wait for one another.
+    let [fourth, third, second, first, zeroth] = TERMS;
+    let squared = t * t;
+    let sum = (first * t + zeroth) + ((third * t + second) + fourth * squared) * squared;
+    1.0 - t * sum * gauss
 }
 
 /// A vector along the normal of a facet of roughness 1 that is seen from `v`.
@@ -51,7 +55,7 @@ pub(super) fn sample(v: Vec3A, u: [f32; 2]) -> Vec3A {
     const EDGE: f32 = 0.5 * f32::EPSILON;
     let [a, b] = u.map(|u| u.clamp(EDGE, 1.0 - EDGE));
     let cosine = v.z;
-    let sine = v.x.hypot(v.y);
+    let sine = (v.x * v.x + v.y * v.y).sqrt();
     let last = cosine / sine;
     let tail = |gauss: f32| sine * FRAC_1_SQRT_PI * gauss;
     let (greatest, total) = if last < 4.0 {
@@ -117,7 +121,13 @@ fn inverse_erf(x: f32) -> f32 {
     } else {
         (w.sqrt() - 3.0, TAIL)
     };
-    x * terms.into_iter().fold(0.0, |sum, term| sum * w + term)
+    // In pairs, which do not wait for one another.
+    let [eighth, seventh, sixth, fifth, fourth, third, second, first, zeroth] = terms;
+    let squared = w * w;
+    let fourfold = squared * squared;
+    let low = (first * w + zeroth) + (third * w + second) * squared;
+    let high = (fifth * w + fourth) + (seventh * w + sixth) * squared;
+    x * (low + (high + eighth * fourfold) * fourfold)
 }
 
 #[cfg(test)]

@@ -194,8 +194,8 @@ impl Packet {
         Some(packet)
     }
 
-    /// What [`Paths::radiance`] gives for each of the points, times the weight that its start has; `start` tells where the path of a point
-    /// begins. Paths that are to be reused are kept by `keeper`, and have no values yet.
+    /// What [`Paths::radiance`] gives for each of the points, times the weight that its start has; `starts` tells where their paths
+    /// begin. Paths that are to be reused are kept by `keeper`, and have no values yet.
     ///
     /// The view is behind a pointer, and it is not inlined, so that the loop is compiled for every kind of sampler, but not of
     /// view.
@@ -204,7 +204,7 @@ impl Packet {
         &self,
         paths: Paths,
         single: &dyn Single<U>,
-        start: &dyn Fn(usize, &mut U) -> Start,
+        starts: &[Start],
         points: &mut [U],
         values: &mut [Vec3],
         keeper: Option<Keeper<'_>>,
@@ -213,9 +213,9 @@ impl Packet {
         let constant = !self.others && !self.varying;
         let plain = self.solids.is_none() && constant && !asks && single.sky().is_none();
         if plain {
-            self.walk::<U, true>(paths, single, start, points, values, keeper);
+            self.walk::<U, true>(paths, single, starts, points, values, keeper);
         } else {
-            self.walk::<U, false>(paths, single, start, points, values, keeper);
+            self.walk::<U, false>(paths, single, starts, points, values, keeper);
         }
     }
 
@@ -224,7 +224,7 @@ impl Packet {
         &self,
         paths: Paths,
         single: &dyn Single<U>,
-        start: &dyn Fn(usize, &mut U) -> Start,
+        starts: &[Start],
         points: &mut [U],
         values: &mut [Vec3],
         keeper: Option<Keeper<'_>>,
@@ -234,7 +234,7 @@ impl Packet {
             paths,
             single,
             sky: single.sky(),
-            start,
+            starts,
             points,
             values,
             keeper,

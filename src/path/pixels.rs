@@ -362,22 +362,23 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
                 free = others;
             }
             let points = runs.iter().map(Run::length).sum();
-            let mut samplers = Vec::with_capacity(points);
-            let mut pixels = Vec::with_capacity(points);
+            let (mut samplers, mut starts) =
+                (Vec::with_capacity(points), Vec::with_capacity(points));
             let mut left = &*room;
             for run in runs {
                 let width = width(run) as usize;
+                let pixel = self.pixel(run.share.position, size);
                 for index in run.indices.clone() {
                     let (row, others) = left.split_at(width);
                     left = others;
-                    samplers.push(Cursor::with_prefix(&run.share.points, index, row));
-                    pixels.push(run.share.position);
+                    let mut sampler = Cursor::with_prefix(&run.share.points, index, row);
+                    starts.push(pixel.start(&mut sampler));
+                    samplers.push(sampler);
                 }
             }
             values.clear();
             values.resize(samplers.len(), Vec3::ZERO);
-            let start = |point: usize, u: &mut _| self.pixel(pixels[point], size).start(u);
-            packet.radiance(self.paths, &any, &start, &mut samplers, values, keeper);
+            packet.radiance(self.paths, &any, &starts, &mut samplers, values, keeper);
             ahead.learn(samplers.iter().map(Cursor::dimension));
         });
     }

@@ -141,8 +141,8 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
     fn evaluate_many<S: Sampler>(&self, samplers: &mut [S], values: &mut [Vec3]) {
         #[cfg(feature = "simd")]
         if let Some(packet) = self.packet() {
-            let start = |_, u: &mut S| self.start(u);
-            return packet.radiance(self.paths, self, &start, samplers, values, None);
+            let starts: Vec<_> = samplers.iter_mut().map(|u| self.start(u)).collect();
+            return packet.radiance(self.paths, self, &starts, samplers, values, None);
         }
         for (u, value) in samplers.iter_mut().zip(values) {
             *value = Integrand::evaluate(self, u);

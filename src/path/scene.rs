@@ -118,11 +118,13 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
             let owner = self.owners[part];
             let emitted = match (owner.emitter, lights) {
                 (DARK, _) => Emitted::Nothing,
-                (emitter, Some(lights)) if part < shapes && lights.is_flat(emitter) => Emitted::Flat(FlatLight {
-                    emitter,
-                    radiance: lights.radiance(emitter),
-                    probability: lights.probability(emitter),
-                }),
+                (emitter, Some(lights)) if part < shapes && lights.is_flat(emitter) => {
+                    Emitted::Flat(FlatLight {
+                        emitter,
+                        radiance: lights.radiance(emitter),
+                        probability: lights.probability(emitter),
+                    })
+                }
                 _ => Emitted::Asked,
             };
             Optics {

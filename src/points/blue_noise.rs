@@ -106,7 +106,11 @@ impl BlueNoisePixel {
     fn axes<const N: usize>(&self, image: u64, first: u32) -> Axes<N> {
         let image = hash(self.image.seed, image);
         let shared = first < SHARED;
-        let own = if shared { image } else { hash(image, self.pixel) };
+        let own = if shared {
+            image
+        } else {
+            hash(image, self.pixel)
+        };
         let (mut prepared, mut scrambles, mut second) = ([0; N], [0; N], [0; N]);
         for (lane, above) in (0..N).zip(0..) {
             // Those past the last dimension are not asked for.

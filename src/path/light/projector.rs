@@ -9,8 +9,8 @@ use super::directional::direction;
 use super::point::{from_point, place};
 use super::slide::Slide;
 use crate::Error;
-use crate::path::{Segment, Surface};
 use crate::path::texture::Texture;
+use crate::path::{Segment, Surface};
 
 /// A point that throws a picture into a pyramid: the reverse of a [`Pinhole`](crate::path::sensor::Pinhole) camera.
 #[derive(Clone, Debug, PartialEq)]

@@ -30,7 +30,7 @@ pub(super) struct Walk<'a, U, const PLAIN: bool> {
     pub(super) paths: Paths,
     pub(super) single: &'a dyn Single<U>,
     pub(super) sky: Option<&'a Sky>,
-    pub(super) start: &'a dyn Fn(usize, &mut U) -> Start,
+    pub(super) starts: &'a [Start],
     pub(super) points: &'a mut [U],
     pub(super) values: &'a mut [Vec3],
     pub(super) keeper: Option<Keeper<'a>>,
@@ -65,7 +65,8 @@ impl State {
     };
 
     #[inline(always)]
-    fn begin(&mut self, lane: usize, point: usize, Start { ray, weight }: Start) {
+    fn begin(&mut self, lane: usize, point: usize, start: &Start) {
+        let Start { ray, weight } = *start;
         Row::set_vector(&mut self.origin, lane, ray.origin);
         Row::set_vector(&mut self.direction, lane, ray.direction);
         Row::set_vector(&mut self.throughput, lane, Vec3A::ONE);
@@ -115,8 +116,7 @@ impl<U: Sampler, const PLAIN: bool> WithSimd for Walk<'_, U, PLAIN> {
                     state.point[lane] = usize::MAX;
                     running -= 1;
                 }
-                if begun < self.points.len() {
-                    let start = (self.start)(begun, &mut self.points[begun]);
+                if let Some(start) = self.starts.get(begun) {
                     state.begin(lane, begun, start);
                     begun += 1;
                     running += 1;

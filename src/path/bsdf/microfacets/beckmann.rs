@@ -122,7 +122,17 @@ fn inverse_erf(x: f32) -> f32 {
         (w.sqrt() - 3.0, TAIL)
     };
     // In pairs, which do not wait for one another.
-    let [eighth, seventh, sixth, fifth, fourth, third, second, first, zeroth] = terms;
+    let [
+        eighth,
+        seventh,
+        sixth,
+        fifth,
+        fourth,
+        third,
+        second,
+        first,
+        zeroth,
+    ] = terms;
     let squared = w * w;
     let fourfold = squared * squared;
     let low = (first * w + zeroth) + (third * w + second) * squared;

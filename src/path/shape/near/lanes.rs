@@ -58,11 +58,7 @@ fn side<S: Simd>(at: Real<S>, height: Real<S>) -> [Real<S>; 2] {
 
 /// The angle between two such planes.
 #[inline(always)]
-fn between<S: Simd>(
-    [a, below_a]: [Real<S>; 2],
-    [b, below_b]: [Real<S>; 2],
-    sign: f32,
-) -> Angle<S> {
+fn between<S: Simd>([a, below_a]: [Real<S>; 2], [b, below_b]: [Real<S>; 2], sign: f32) -> Angle<S> {
     Angle {
         cosine: sign * (a * b),
         sine: (below_a * below_a + a * a * (below_b * below_b)).sqrt(),

@@ -5,6 +5,9 @@ use glam::Vec3A;
 /// `1 / sqrt(pi)`.
 const FRAC_1_SQRT_PI: f32 = 0.564_189_6;
 
+/// `sqrt(pi) / 4`.
+const QUARTER_SQRT_PI: f32 = 0.443_113_46;
+
 /// The area of facets seen at `cosine`, where `rough` is the sine times the roughness:
 /// `cosine (1 + erf(a)) / 2 + rough exp(-a^2) / (2 sqrt(pi))` with `a = cosine / rough`.
 ///
@@ -45,7 +48,8 @@ fn erf(x: f32, gauss: f32) -> f32 {
 /// A vector along the normal of a facet of roughness 1 that is seen from `v`.
 ///
 /// Its slope along `v` has the density `(cosine - x sine) exp(-x^2)` up to the slope where facets turn away; its
-/// distribution function is inverted by Newton's method in `erf(x)`, from the solution for a horizontal `v`.[^jakob]
+/// distribution function is inverted in `erf(x)`,[^jakob] by Halley's method, from between the solutions for a vertical `v` and a horizontal one:
+/// four in five times one step does, where Newton's method from the latter takes two or three.
 ///
 /// [^jakob]: Jakob, Wenzel (2014). *An Improved Visible Normal Sampling Routine for the Beckmann Distribution*.
 ///     <https://www.mitsuba-renderer.org/~wenzel/files/visnormal.pdf>
@@ -66,16 +70,20 @@ pub(super) fn sample(v: Vec3A, u: [f32; 2]) -> Vec3A {
         (1.0, 2.0 * cosine)
     };
     let within = |erf: f32| erf.clamp(-1.0 + EDGE, greatest.min(1.0 - EDGE));
-    let mut at = within(greatest - (greatest + 1.0) * erf((-a.ln()).sqrt(), a));
+    let vertical = a * (1.0 + greatest) - 1.0;
+    let horizontal = greatest - (1.0 + greatest) * erf((-a.ln()).sqrt(), a);
+    let mut at = within(vertical + (horizontal - vertical) * sine);
     let mut along = inverse_erf(at);
     for _ in 0..3 {
-        let excess = cosine * (1.0 + at) + tail((-along * along).exp()) - a * total;
+        let gauss = (-along * along).exp();
+        let excess = cosine * (1.0 + at) + tail(gauss) - a * total;
         let slope = cosine - along * sine;
         // As near as rounding lets it come, or at the edge.
         if excess.abs() < 1e-6 * total || !(slope > 0.0) {
             break;
         }
-        at = within(at - excess / slope);
+        let bent = slope + excess * (QUARTER_SQRT_PI * sine) / (gauss * slope);
+        at = within(at - excess / if bent > 0.0 { bent } else { slope });
         along = inverse_erf(at);
     }
     let across = inverse_erf(2.0 * b - 1.0);
@@ -172,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn newtons_method_arrives() {
+    fn the_distribution_function_is_inverted() {
         // The distribution function of the slope along `v`, in f64.
         for cosine in [1.0_f32, 0.9, 0.5, 0.1, 1e-2, 1e-4] {
             let v = Vec3A::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);

@@ -1,6 +1,6 @@
 //! Colours: linear red, green and blue.
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3A;
 
 use crate::Error;
 
@@ -34,8 +34,3 @@ fn within(
 
 /// The luminance of linear sRGB, by its second row of the matrix to XYZ, as Mitsuba rounds it.
 pub(in crate::path) const LUMINANCE: Vec3A = Vec3A::new(0.212_671, 0.715_160, 0.072_169);
-
-/// The luminance of linear sRGB, as ITU-R BT.709 weighs it.
-pub(in crate::path) fn luminance(rgb: Vec3) -> f64 {
-    0.2126 * f64::from(rgb.x) + 0.7152 * f64::from(rgb.y) + 0.0722 * f64::from(rgb.z)
-}

@@ -40,6 +40,8 @@ pub use projector::ProjectorLight;
 pub(in crate::path) use sky::Seen;
 pub use sky::Sky;
 pub use spot::SpotLight;
+#[cfg(feature = "simd")]
+pub(in crate::path) use surroundings::Chosen;
 pub use surroundings::{Background, Source, Surroundings};
 pub use tree::LightTree;
 

@@ -22,7 +22,7 @@ use glam::{Vec3, Vec3A};
 use super::Paths;
 use super::bsdf::{Lambertian, Scattered, Scattering};
 use super::geometry::{Geometry, Hit};
-use super::light::{AreaLights, Emission, Illumination, Sky};
+use super::light::{AreaLights, Emission, Illumination, Sky, Surroundings};
 use super::render::Start;
 use super::reuse::{Group, Traces};
 use super::shape::Primitive;
@@ -99,6 +99,9 @@ pub(in crate::path) trait Single<U> {
 
     /// The picture around the scene, if that is what is around it.
     fn sky(&self) -> Option<&Sky>;
+
+    /// Sources without size, if they are seen in lanes.
+    fn sources(&self) -> Option<&Surroundings>;
 }
 
 impl Packet {
@@ -211,7 +214,11 @@ impl Packet {
     ) {
         let asks = self.asks_lights || self.asked.is_some() || self.asks_around;
         let constant = !self.others && !self.varying;
-        let plain = self.solids.is_none() && constant && !asks && single.sky().is_none();
+        let plain = self.solids.is_none()
+            && constant
+            && !asks
+            && single.sky().is_none()
+            && single.sources().is_none();
         if plain {
             self.walk::<U, true>(paths, single, starts, points, values, keeper);
         } else {
@@ -234,6 +241,7 @@ impl Packet {
             paths,
             single,
             sky: single.sky(),
+            sources: single.sources(),
             starts,
             points,
             values,

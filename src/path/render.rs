@@ -13,7 +13,7 @@ use super::filter::{BoxFilter, Filter};
 use super::geometry::{Geometry, Hit};
 use super::image::{Image, Row};
 #[cfg(feature = "simd")]
-use super::light::{Emission, Illumination, Sky};
+use super::light::{Emission, Illumination, Sky, Surroundings};
 use super::light::{Environment, Light};
 #[cfg(feature = "simd")]
 use super::packet::{Packet, Single};
@@ -109,6 +109,11 @@ impl<U: Sampler, B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Single
 
     fn sky(&self) -> Option<&Sky> {
         self.scene.environment().as_sky()
+    }
+
+    fn sources(&self) -> Option<&Surroundings> {
+        let surroundings = self.scene.environment().as_surroundings()?;
+        surroundings.around_in_lanes().map(|_| surroundings)
     }
 }
 

@@ -110,7 +110,10 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
     fn packed(&self) -> Option<Packet> {
         let around = match self.environment.as_sky() {
             Some(_) => Some(Vec3A::ZERO),
-            None => self.environment.constant(),
+            None => self.environment.constant().or_else(|| {
+                let surroundings = self.environment.as_surroundings()?;
+                surroundings.around_in_lanes()
+            }),
         };
         let lights = self.lights.as_area_lights();
         let shapes = self.geometry.shapes().len();

@@ -9,7 +9,7 @@ use crate::path::{Segment, Surface, color};
 /// Parallel light, as of a sun without size. Nothing can hit it: it is met by next-event estimation alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionalLight {
-    toward: Vec3A,
+    pub(super) toward: Vec3A,
     irradiance: Vec3A,
 }
 

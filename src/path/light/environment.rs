@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 
-use super::{Emission, Illumination, Sky};
+use super::{Emission, Illumination, Sky, Surroundings};
 use crate::path::{Surface, color};
 use crate::{Error, Sampler};
 
@@ -22,6 +22,12 @@ pub trait Environment: Sync {
     /// The picture of a sky, if [`emitted`](Self::emitted) and [`sample`](Self::sample) are those of that sky in every
     /// respect: where many paths are traced at once, the sky is asked for all of them. `None` unless implemented.
     fn as_sky(&self) -> Option<&Sky> {
+        None
+    }
+
+    /// The sources and the background, if [`emitted`](Self::emitted) and [`sample`](Self::sample) are those of them in every
+    /// respect: where many paths are traced at once, a few are asked for all of them. `None` unless implemented.
+    fn as_surroundings(&self) -> Option<&Surroundings> {
         None
     }
 
@@ -67,6 +73,13 @@ impl Constant {
         Ok(Self {
             radiance: color::radiance(radiance)?,
         })
+    }
+}
+
+impl Constant {
+    #[cfg(feature = "simd")]
+    pub(super) fn radiance(&self) -> Vec3A {
+        self.radiance
     }
 }
 

@@ -9,8 +9,8 @@ use crate::path::{Segment, Surface, color};
 /// A point that shines equally in all directions. Nothing can hit it: it is met by next-event estimation alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLight {
-    position: Vec3A,
-    intensity: Vec3A,
+    pub(super) position: Vec3A,
+    pub(super) intensity: Vec3A,
 }
 
 impl PointLight {

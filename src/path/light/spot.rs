@@ -1,28 +1,31 @@
 //! Lights without size that shine into a cone.
 
+use core::f32::consts::TAU;
+
 use glam::{Vec2, Vec3A};
 
 use super::Illumination;
 use super::point::{from_point, place};
 use super::slide::Slide;
 use crate::Error;
+use crate::path::frame::turns;
 use crate::path::texture::Texture;
 use crate::path::{Segment, Surface, color};
 
 /// A point that shines into a cone: with full intensity near the axis, from there falling linearly with the angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpotLight {
-    position: Vec3A,
-    axis: Vec3A,
-    intensity: Vec3A,
+    pub(super) position: Vec3A,
+    pub(super) axis: Vec3A,
+    pub(super) intensity: Vec3A,
     /// The angle, in radians, at which the light ends.
-    cutoff: f32,
+    pub(super) cutoff: f32,
     /// The cosine of the angle up to which it is full, and of that at which it ends.
-    full_cosine: f32,
-    cutoff_cosine: f32,
+    pub(super) full_cosine: f32,
+    pub(super) cutoff_cosine: f32,
     /// One over the width of the transition, in radians; 0 where there is none.
-    per_radian: f32,
-    slide: Option<Slide>,
+    pub(super) per_radian: f32,
+    pub(super) slide: Option<Slide>,
 }
 
 impl SpotLight {
@@ -104,7 +107,9 @@ impl SpotLight {
         let falloff = if cosine >= self.full_cosine {
             1.0
         } else {
-            ((self.cutoff - cosine.acos()) * self.per_radian).clamp(0.0, 1.0)
+            let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
+            let angle = TAU * turns(sine, cosine);
+            ((self.cutoff - angle) * self.per_radian).clamp(0.0, 1.0)
         };
         let mut intensity = self.intensity * falloff;
         if let Some(slide) = &self.slide {

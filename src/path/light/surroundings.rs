@@ -1,13 +1,22 @@
 //! Several sources of light that are no shapes.
 
-use glam::{Vec3, Vec3A};
+#[cfg(feature = "simd")]
+mod lanes;
+
+use core::ops::{Add, Mul};
+
+use glam::Vec3A;
 
 use super::{
     Constant, DirectionalLight, Emission, Environment, Illumination, PointLight, ProjectorLight,
     Sky, SpotLight,
 };
-use crate::path::{Segment, Surface, color};
+use crate::path::color::LUMINANCE;
+use crate::path::{Segment, Surface};
 use crate::{Error, Sampler};
+
+#[cfg(feature = "simd")]
+pub(in crate::path) use lanes::Chosen;
 
 /// A source of light without size.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,30 +114,39 @@ impl Surroundings {
 
     /// One of the sources, chosen by the coordinate `u`, with its weight over the probability of the choice.
     #[inline]
-    #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-    fn choose<D>(&self, from: &Surface<D>, mut u: f64) -> Option<Illumination> {
-        // One pass: each source takes the place of the one so far with the probability of its share in the sum so far.
-        let mut chosen = None;
-        let mut sum = 0.0;
-        for source in &self.sources {
-            let weight = source.arriving(from.point);
-            let worth = color::luminance(Vec3::from(weight));
-            if !(worth > 0.0) {
-                continue;
-            }
-            let before = sum;
-            sum += worth;
-            let part = u * sum;
-            if part < worth || before == 0.0 {
-                chosen = Some((source, weight, worth));
-                u = part / worth;
-            } else {
-                u = (part - worth) / before;
-            }
-        }
-        let (source, weight, worth) = chosen?;
-        Illumination::without_size(weight * (sum / worth) as f32, || source.way(from))
+    fn choose_for<D>(&self, from: &Surface<D>, u: f64) -> Option<Illumination> {
+        let arriving = |source: &Source| source.arriving(from.point);
+        let worths = self.sources.iter().map(|source| {
+            let weight = arriving(source);
+            worth(weight.x, weight.y, weight.z)
+        });
+        let (chosen, factor) = choose(worths, u)?;
+        let source = &self.sources[chosen];
+        Illumination::without_size(arriving(source) * factor, || source.way(from))
     }
+}
+
+/// What an irradiance is worth when a source is chosen: its luminance.
+#[inline(always)]
+fn worth<T: Mul<f32, Output = T> + Add<Output = T>>(red: T, green: T, blue: T) -> T {
+    red * LUMINANCE.x + green * LUMINANCE.y + blue * LUMINANCE.z
+}
+
+/// The place of one that the coordinate `u` chooses in proportion to what they are `worth`, and one over the probability of it.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
+fn choose(worths: impl Iterator<Item = f32> + Clone, u: f64) -> Option<(usize, f32)> {
+    let sum: f64 = worths.clone().map(f64::from).sum();
+    let target = u * sum;
+    let (mut before, mut chosen) = (0.0, None);
+    for (place, worth) in worths.enumerate() {
+        let worth = f64::from(worth);
+        if worth > 0.0 && before <= target {
+            chosen = Some((place, worth));
+        }
+        before += worth;
+    }
+    chosen.map(|(place, worth)| (place, (sum / worth) as f32))
 }
 
 impl Environment for Surroundings {
@@ -138,6 +156,10 @@ impl Environment for Surroundings {
             Background::Constant(constant) if self.sources.is_empty() => constant.constant(),
             _ => None,
         }
+    }
+
+    fn as_surroundings(&self) -> Option<&Surroundings> {
+        Some(self)
     }
 
     fn as_sky(&self) -> Option<&Sky> {
@@ -183,7 +205,7 @@ impl Environment for Surroundings {
                 ..light
             });
         }
-        let light = self.choose(from, (choice - share) / (1.0 - share))?;
+        let light = self.choose_for(from, (choice - share) / (1.0 - share))?;
         Some(Illumination {
             weight: light.weight / (1.0 - share) as f32,
             ..light

@@ -7,12 +7,12 @@ use super::Single;
 use super::here::Here;
 use super::lamp::Lamp;
 use super::solids::Names;
-use crate::path::Surface;
 use crate::path::bsdf::Scattered;
 use crate::path::geometry::Hit;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
-use crate::path::light::{Emission, Illumination, Seen};
+use crate::path::light::{Chosen, Emission, Illumination, Seen};
 use crate::path::segment::End;
+use crate::path::{Surface, gamma};
 
 /// Weights and densities, and the directions they belong to where those were drawn.
 pub(super) struct Weights {
@@ -87,6 +87,34 @@ impl Seen {
             limit: Real::splat(simd, f32::INFINITY),
             weight: Vector::load(simd, &self.radiance) / density,
             density: active.select(density, Real::splat(simd, 1.0)),
+            active,
+        }
+    }
+}
+
+impl Chosen {
+    /// The way to the light.
+    #[inline(always)]
+    pub(super) fn lamp<S: Simd>(&self, simd: S, here: &Here<'_, S>, active: Mask<S>) -> Lamp<S> {
+        let zero = Real::splat(simd, 0.0);
+        let far = Real::load(simd, &self.far).gt(zero);
+        let (from, weight) = (
+            Vector::load(simd, &self.from),
+            Vector::load(simd, &self.weight),
+        );
+        let toward = far.choose(from, from - here.point);
+        let start = here.place.leave(here.point, toward);
+        let way = from - start;
+        let length = way.length();
+        let any = weight.max_element().gt(zero);
+        let active = active & any & (far | length.gt(zero));
+        let endless = Real::splat(simd, f32::INFINITY);
+        Lamp {
+            start,
+            into: far.choose(from, way * (1.0 / length)),
+            limit: far.select(endless, length * (1.0 - gamma(8))),
+            weight,
+            density: endless,
             active,
         }
     }
@@ -191,6 +219,8 @@ pub(super) struct Draws {
     pub(super) lamp: Option<Illuminated>,
     pub(super) around: Option<Illuminated>,
     pub(super) sky: Option<Seen>,
+    /// What chooses among sources without size.
+    pub(super) choices: [f64; WIDEST],
     /// Where laws are not ideally diffuse.
     pub(super) scattered: Option<Scatters>,
 }

@@ -11,7 +11,8 @@ use crate::path::frame::single;
 use crate::path::geometry::FEW;
 use crate::path::light::{
     AreaLights, Background, Constant, DirectionalLight, Emission, Emitter, Environment,
-    Illumination, Light, LightTree, NoEnvironment, NoLight, PointLight, Sky, Source, Surroundings,
+    Illumination, Light, LightTree, NoEnvironment, NoLight, PointLight, Sky, Source, SpotLight,
+    Surroundings,
 };
 use crate::path::reuse::{self, Group, MOST, Part, Pixels, Traces, WIDTH};
 use crate::path::roulette::Rule;
@@ -583,21 +584,27 @@ fn packets_give_the_bits_of_single_paths_among_lights_of_any_kind() {
 
 #[test]
 fn packets_give_the_bits_of_single_paths_among_sources_without_size() {
-    let around = |background| {
+    let times_around = |times, background| {
         let bulb = PointLight::new([0.6, 0.9, 0.7], [3.0, 2.0, 1.0]).unwrap();
         let sun = DirectionalLight::new([0.3, -1.0, 0.2], [1.0, 0.9, 0.8]).unwrap();
-        Surroundings::new(
-            vec![Source::Point(bulb), Source::Directional(sun)],
-            background,
-        )
-        .unwrap()
+        let spot = SpotLight::new([-0.4, 1.9, 0.9], [0.1, -1.0, -0.3], [4.0; 3], 15.0, 50.0);
+        let sources = [
+            Source::Point(bulb),
+            Source::Directional(sun),
+            Source::Spot(Box::new(spot.unwrap())),
+        ];
+        let sources = (0..times).flat_map(|_| sources.clone()).collect();
+        Surroundings::new(sources, background).unwrap()
     };
+    let around = |background| times_around(1, background);
     let grey = Uniform::from(0.4);
     let sky = Constant::new([0.2, 0.3, 0.4]).unwrap();
     agree(&balls::<_, AreaLights, _>(true, grey, around(Background::None)).unwrap());
     agree(&balls::<_, NoLight, _>(false, grey, around(Background::Constant(sky))).unwrap());
     agree::<_, AreaLights, _>(&room(true, around(Background::Constant(sky))).unwrap());
     agree::<_, AreaLights, _>(&lights(around(Background::None)).unwrap());
+    // More than are seen at once.
+    agree::<_, AreaLights, _>(&lights(times_around(6, Background::None)).unwrap());
     agree::<_, LightTree, _>(&lights(around(Background::None)).unwrap());
     let diffuse = Lambertian::new([0.3, 0.9, 0.5]).unwrap();
     agree(&copies(&diffuse, around(Background::None)).unwrap());

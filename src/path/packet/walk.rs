@@ -18,7 +18,7 @@ use super::{Packet, Single, Start};
 use crate::Sampler;
 use crate::path::Paths;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
-use crate::path::light::Sky;
+use crate::path::light::{Sky, Surroundings};
 use crate::path::segment::End;
 
 /// The paths of some points.
@@ -30,6 +30,7 @@ pub(super) struct Walk<'a, U, const PLAIN: bool> {
     pub(super) paths: Paths,
     pub(super) single: &'a dyn Single<U>,
     pub(super) sky: Option<&'a Sky>,
+    pub(super) sources: Option<&'a Surroundings>,
     pub(super) starts: &'a [Start],
     pub(super) points: &'a mut [U],
     pub(super) values: &'a mut [Vec3],
@@ -153,6 +154,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             (!PLAIN && packet.asks_lights, !PLAIN && packet.asks_around);
         let some_asked = !PLAIN && packet.asked.is_some();
         let sky = self.sky.filter(|_| !PLAIN);
+        let sources = self.sources.filter(|_| !PLAIN);
         let (zero, one) = (Real::splat(simd, 0.0), Real::splat(simd, 1.0));
         let origin = Vector::load(simd, &state.origin);
         let direction = Vector::load(simd, &state.direction);
@@ -300,9 +302,10 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             lamp: (asks_lights || some_asked).then_some(Illuminated::NONE),
             around: asks_around.then_some(Illuminated::NONE),
             sky: None,
+            choices: [0.0; WIDEST],
             scattered: others.then_some(Scatters::NONE),
         };
-        let [a, b, c, d] = if asks || sky.is_some() {
+        let [a, b, c, d] = if asks || sky.is_some() || sources.is_some() {
             self.draw(simd, state, (walking, &kind.row()), at.hits, &mut draws)
         } else {
             self.draw_diffuse(simd, state, walking, &mut draws.chosen)
@@ -328,6 +331,12 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
                     radiance = self.lit(simd, &at, &lamp, between, (throughput, radiance));
                 }
             }
+        }
+        if let Some(sources) = sources {
+            let (points, active) = (here.point.rows(), seeing.row(simd));
+            let chosen = sources.chosen_in_lanes(packet.arch, &points, &active, &draws.choices);
+            let lamp = chosen.lamp(simd, &here, seeing);
+            radiance = self.lit(simd, &at, &lamp, &packet.shapes, (throughput, radiance));
         }
         if let Some(sky) = &draws.sky {
             let lamp = sky.lamp(simd, &here, seeing);

@@ -6,12 +6,13 @@ use super::{State, Walk};
 use crate::Sampler;
 use crate::path::frame::{single, singles};
 use crate::path::lanes::{Mask, Real, Row, WIDEST};
+use crate::path::light::Surroundings;
 use crate::path::packet::drawn::{Draws, Hits};
 use crate::path::packet::optics::{DELTA, OTHER};
 
 impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
     /// What the paths draw at their points, where the view is asked or the sky is a picture: two coordinates for a point of flat
-    /// lights, which choose one first, or what others draw; two for the sky, or what other surroundings draw; and two for the
+    /// lights, which choose one first, or what others draw; two for the sky, one for sources without size, or what other surroundings draw; and two for the
     /// next direction of the ideally diffuse law, or what others draw.
     #[inline(always)]
     pub(super) fn draw<S: Simd>(
@@ -47,6 +48,9 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
                 }
                 if let (Some(hits), Some(around)) = (hits, &mut draws.around) {
                     around.set(lane, self.single.around(&hits.hit(lane), sampler));
+                }
+                if self.sources.is_some_and(Surroundings::choose) {
+                    draws.choices[lane] = sampler.next_1d();
                 }
                 if self.sky.is_some() {
                     (lanes[count], coordinates[count]) = (lane, sampler.next_2d());

@@ -15,7 +15,7 @@ use curve::{Curve, SAMPLES};
 /// One net for all pixels of an image, dealt to them along a shuffled Morton curve: neighbouring pixels get points
 /// that complement one another.[^ahmed]
 ///
-/// Each pixel's own points are a net; so are those of every aligned square of 2 by 2, 4 by 4 and more pixels together. The
+/// Each pixel's own points are a net; so are those of every aligned square of 2 by 2, 4 by 4 and up to 256 by 256 pixels together. The
 /// error of the image is thereby of high frequency, blue noise, which the eye and every filter average away. At few
 /// samples a pixel it looks markedly better than independent pixels; the error of a single pixel is the same. The
 /// benefit is lost when rendering stops before all samples of a pixel are taken.
@@ -88,6 +88,9 @@ fn morton(pixel: [u32; 2]) -> u64 {
 /// Dimensions in which pixels complement one another.
 const SHARED: u32 = 16;
 
+/// Pixels that do: those of a square, 256 in a row.
+const TILE: u64 = 1 << 16;
+
 /// The points of one pixel of an image, made by [`BlueNoise::pixel`].
 ///
 /// An index at or past the size belongs to another, independent image.
@@ -106,11 +109,13 @@ impl BlueNoisePixel {
     fn axes<const N: usize>(&self, image: u64, first: u32) -> Axes<N> {
         let image = hash(self.image.seed, image);
         let shared = first < SHARED;
+        // What pixels have in common that share dimensions, or the pixel alone.
         let own = if shared {
-            image
+            self.pixel / TILE
         } else {
-            hash(image, self.pixel)
+            self.pixel
         };
+        let own = hash(hash(image, shared.into()), own);
         let (mut prepared, mut scrambles, mut second) = ([0; N], [0; N], [0; N]);
         for (lane, above) in (0..N).zip(0..) {
             // Those past the last dimension are not asked for.
@@ -129,7 +134,7 @@ impl BlueNoisePixel {
             scrambles,
             second,
             curve: match shared {
-                true => curve.followed_by(self.pixel, 32),
+                true => curve.followed_by(self.pixel % TILE, TILE.ilog2()),
                 false => curve,
             },
         }
@@ -141,7 +146,8 @@ impl PointSet for BlueNoisePixel {
     fn coordinate(&self, index: u64, dimension: u32) -> f64 {
         let samples = self.image.samples;
         let axes = self.axes::<1>(index >> samples, dimension);
-        axes.coordinates(axes.curve.followed_by(index, samples).shuffled)[0]
+        let place = axes.curve.followed_by(index, samples).shuffled;
+        axes.coordinates(axes.digits(place))[0]
     }
 
     fn size(&self) -> Option<u64> {
@@ -195,7 +201,9 @@ impl BlueNoisePixel {
                 _ => &axes.insert((image, self.axes(image, tile.start))).1,
             };
             let curve = axes.curve.followed_by(index >> bits, samples - bits);
-            curve.followed_by_all(bits, places);
+            // What the points have in common, and what tells them apart.
+            let common = axes.digits(curve.shuffled.map(|place| place << bits));
+            curve.all_that_follow(bits, places);
             let place = (index % (1 << bits)) as usize;
             let places = &mut places[place..1 << bits];
             let now = places.len().min(out.len() / block.width);
@@ -203,12 +211,14 @@ impl BlueNoisePixel {
             let rows = rows.chunks_exact_mut(block.width);
             if columns.len() == TOGETHER {
                 for (row, &mut place) in rows.zip(places) {
-                    row[columns.start..][..TOGETHER].copy_from_slice(&axes.coordinates(place));
+                    let coordinates = axes.coordinates(axes.digits_near(place, &common));
+                    row[columns.start..][..TOGETHER].copy_from_slice(&coordinates);
                 }
             } else {
                 // Whole vectors first, in the place of what they are made of: some of each is left out.
                 for place in places.iter_mut().take(now) {
-                    *place = axes.coordinates(*place).map(f64::to_bits);
+                    let coordinates = axes.coordinates(axes.digits_near(*place, &common));
+                    *place = coordinates.map(f64::to_bits);
                 }
                 for (row, bits) in rows.zip(places) {
                     for (u, &bits) in row[columns.clone()].iter_mut().zip(bits.iter()) {
@@ -233,13 +243,28 @@ struct Axes<const N: usize> {
 }
 
 impl<const N: usize> Axes<N> {
-    /// The coordinates of the samples at some places on the curve.
+    /// The digits of the samples at some places on the curve.
     #[inline(always)]
-    fn coordinates(&self, places: [u64; N]) -> [f64; N] {
-        let mut digits = places;
-        for (digits, &second) in digits.iter_mut().zip(&self.second) {
+    fn digits(&self, mut places: [u64; N]) -> [u64; N] {
+        for (digits, &second) in places.iter_mut().zip(&self.second) {
             *digits = pascal(*digits, second);
         }
+        places
+    }
+
+    /// The same of places of 8 bits at most after those that have some digits in common.
+    #[inline(always)]
+    fn digits_near(&self, mut places: [u64; N], common: &[u64; N]) -> [u64; N] {
+        let axes = self.second.iter().zip(common);
+        for (digits, (&second, &common)) in places.iter_mut().zip(axes) {
+            *digits = pascal_of_byte(*digits, second) ^ common;
+        }
+        places
+    }
+
+    /// The coordinates that have some digits before they are scrambled.
+    #[inline(always)]
+    fn coordinates(&self, digits: [u64; N]) -> [f64; N] {
         let mut coordinates = [0.0; N];
         let keyed = digits.into_iter().zip(&self.scrambles);
         for (u, (digits, &key)) in coordinates.iter_mut().zip(keyed) {
@@ -259,6 +284,12 @@ const fn pascal(mut word: u64, second: u64) -> u64 {
     word ^= word >> 32 & second;
     word ^= word >> 16 & 0x0000_ffff_0000_ffff & second;
     word ^= word >> 8 & 0x00ff_00ff_00ff_00ff & second;
+    pascal_of_byte(word, second)
+}
+
+/// The same for each byte alone.
+#[inline(always)]
+const fn pascal_of_byte(mut word: u64, second: u64) -> u64 {
     word ^= word >> 4 & 0x0f0f_0f0f_0f0f_0f0f & second;
     word ^= word >> 2 & 0x3333_3333_3333_3333 & second;
     word ^ word >> 1 & 0x5555_5555_5555_5555 & second

@@ -25,6 +25,9 @@ impl Ahead {
     /// A coordinate alone takes as long as so many of those that are computed together, about.
     const ALONE: usize = 32;
 
+    /// Point sets compute so many together, and are slower with fewer.
+    const TOGETHER: usize = 8;
+
     /// How many.
     pub(super) fn width(&self) -> u32 {
         self.width.get()
@@ -47,8 +50,9 @@ impl Ahead {
             longer += count;
             longer > few
         });
+        let width = shorter.unwrap_or(0).next_multiple_of(Self::TOGETHER);
         #[expect(clippy::cast_possible_truncation, reason = "at most 64")]
-        self.width.set(shorter.unwrap_or(0) as u32);
+        self.width.set(width as u32);
     }
 }
 
@@ -69,10 +73,10 @@ mod tests {
                 .collect();
             learned(&read)
         };
-        assert_eq!([2, 3].map(with_long), [6, 20]);
+        assert_eq!([2, 3].map(with_long), [8, 24]);
         assert_eq!(
             [learned(&[]), learned(&[3, 9, 4]), learned(&[100])],
-            [7, 9, 64]
+            [7, 16, 64]
         );
     }
 }

@@ -50,10 +50,10 @@ impl<const N: usize> Curve<N> {
         self
     }
 
-    /// What it becomes when all numbers of `bits` bits, those of a sample at most, come next.
+    /// The ends of the places that follow when all numbers of `bits` bits come next, those of a sample at most.
     #[inline(always)]
-    pub(super) fn followed_by_all(&self, bits: u32, places: &mut [[u64; N]; SAMPLES]) {
-        places[0] = self.shuffled;
+    pub(super) fn all_that_follow(&self, bits: u32, places: &mut [[u64; N]; SAMPLES]) {
+        places[0] = [0; N];
         let mut done = 0;
         while done < bits {
             let base = (bits - done).min(2);

@@ -102,6 +102,11 @@ impl Emitter {
         }
     }
 
+    /// Whether it is flat and shines the same all over.
+    pub(in crate::path) fn is_plain(&self) -> bool {
+        self.picture.is_none() && matches!(self.shape, Primitive::Flat(_))
+    }
+
     /// Draws its points by solid angle for what is near, where there is a closed form.
     pub(in crate::path) fn by_solid_angle(&mut self) {
         if let Primitive::Flat(flat) = &mut self.shape {

@@ -1,7 +1,7 @@
 //! Many paths at once, one in each lane of the vectors that the machine has.
 //!
-//! For scenes of few shapes, and meshes and copies. Rays look for shapes and boxes around meshes and copies, and paths are lit by flat lights and
-//! scattered ideally diffusely, in lanes; all else goes lane by lane. Every lane has the bits of [`Paths::radiance`]: the same
+//! For scenes of few shapes, and meshes and copies. Rays look for shapes and boxes around meshes and copies, and paths are lit by flat lights, skies and
+//! sources without size and scattered ideally diffusely, in lanes; all else goes lane by lane. Every lane has the bits of [`Paths::radiance`]: the same
 //! arithmetic in the same order, the coordinates read in the same order.
 
 mod boxes;
@@ -51,7 +51,7 @@ pub(in crate::path) struct Packet {
     boxes: Boxes,
     lights: AreaLights,
     near: Option<Near>,
-    /// The shape of each emitter; of one that is drawn one lane after the other a number that no shape has.
+    /// The shape of each emitter; of one that is drawn one lane after the other a number that no flat shape has.
     emitters: Vec<u32>,
     around: Vec3A,
     triangles: bool,
@@ -64,7 +64,7 @@ pub(in crate::path) struct Packet {
     others: bool,
     /// Whether the view is asked for all light of shapes, lane by lane.
     asks_lights: bool,
-    /// The number of such emitters, if there are any beside flat lights.
+    /// That number, if there are such emitters beside flat lights. The [`Table`] knows nothing of it.
     asked: Option<u32>,
     /// Whether it is asked for what is around.
     asks_around: bool,
@@ -106,7 +106,8 @@ pub(in crate::path) trait Single<U> {
 
 impl Packet {
     /// The scene of the given shapes, if it is one of those. `optics` tells what each of the `parts` does to light, as [`Hit`] numbers them;
-    /// `smooth`, whether laws heed interpolated normals. Without `lights`, or if none of them is flat, the view is asked for all light of shapes; without
+    /// `smooth`, whether laws heed interpolated normals. Without `lights`, or if none of them is flat, or if some are not
+    /// and as many shapes are flat as there is room for, the view is asked for all light of shapes; without
     /// `around`, the same radiance from everywhere, for what is around, unless that is a sky.
     pub(in crate::path) fn new(
         geometry: &Geometry,
@@ -120,7 +121,9 @@ impl Packet {
         let flats = &sweep.flat_shapes;
         // Which part a lane is at is kept in 32 bits, as the trees keep triangles and copies.
         u32::try_from(parts).ok()?;
-        let known: Vec<_> = (0..parts).map(optics).collect();
+        let mut known: Vec<_> = (0..parts).map(optics).collect();
+        let lights = lights.and_then(|lights| in_lanes(lights, &mut known, flats.len()));
+        let first = u32::try_from(flats.len()).ok()?;
         let laws = || known.iter().map(|optics| &optics.law);
         let mut packet = Self {
             table: Table::EMPTY,
@@ -142,9 +145,7 @@ impl Packet {
             asks_around: around.is_none(),
             arch: pulp::Arch::new(),
         };
-        // No flat shape has it, and nothing is known of it.
-        let asked = u32::try_from(flats.len()).ok()?;
-        packet.emitters = vec![asked; packet.lights.shapes().count()];
+        packet.emitters = vec![first; packet.lights.shapes().count()];
         for ((number, &shape), &divides) in (0_u32..).zip(flats).zip(&sweep.divides) {
             let Primitive::Flat(flat) = &primitives[shape] else {
                 return None;
@@ -159,12 +160,9 @@ impl Packet {
             packet.triangles |= flat.slant != 0.0;
             if let Emitted::Flat(light) = optics.emitted {
                 packet.slanted_lights |= flat.slant != 0.0;
-                if let Some(place) = packet.emitters.get_mut(light.emitter as usize) {
-                    *place = number;
-                }
+                packet.emitters[light.emitter as usize] = number;
             }
         }
-        let first = u32::try_from(flats.len()).ok()?;
         let others = sweep.round.iter().map(|&(shape, _)| shape);
         let round: Vec<_> = (sweep.ball_shapes.iter().copied().chain(others))
             .map(|shape| (primitives[shape], shape))
@@ -181,19 +179,8 @@ impl Packet {
                 smooth,
             });
         }
-        let others = packet.emitters.iter().filter(|&&shape| shape == asked);
-        match others.count() {
-            0 => (),
-            some if some < packet.emitters.len() && flats.len() < MOST => {
-                packet.asked = Some(asked);
-            }
-            _ => {
-                packet.lights = AreaLights::NONE;
-                packet.emitters.clear();
-                packet.asks_lights = true;
-            }
-        }
-        packet.near = Near::new(&packet.emitters, asked, &packet.lights);
+        packet.asked = packet.emitters.contains(&first).then_some(first);
+        packet.near = Near::new(&packet.emitters, first, &packet.lights);
         Some(packet)
     }
 
@@ -212,6 +199,7 @@ impl Packet {
         values: &mut [Vec3],
         keeper: Option<Keeper<'_>>,
     ) {
+        debug_assert_eq!(starts.len(), points.len(), "a start for each point");
         let asks = self.asks_lights || self.asked.is_some() || self.asks_around;
         let constant = !self.others && !self.varying;
         let plain = self.solids.is_none()
@@ -264,6 +252,26 @@ impl Packet {
             traces,
         });
     }
+}
+
+/// The lights, if any are drawn in lanes or there are none; otherwise the scene is told to ask for all. `flats` is how many shapes are flat.
+fn in_lanes<'a>(
+    lights: &'a AreaLights,
+    known: &mut [Optics],
+    flats: usize,
+) -> Option<&'a AreaLights> {
+    let is_flat = |optics: &&mut Optics| matches!(optics.emitted, Emitted::Flat(_));
+    let (flat, all) = (
+        known.iter_mut().filter(is_flat).count(),
+        lights.shapes().count(),
+    );
+    if flat == all || flat > 0 && flats < MOST {
+        return Some(lights);
+    }
+    for optics in known.iter_mut().filter(is_flat) {
+        optics.emitted = Emitted::Asked;
+    }
+    None
 }
 
 #[cfg(test)]

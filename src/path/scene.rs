@@ -121,7 +121,7 @@ impl<B: Bsdf, L: Light, E: Environment> Scene<B, L, E> {
             let owner = self.owners[part];
             let emitted = match (owner.emitter, lights) {
                 (DARK, _) => Emitted::Nothing,
-                (emitter, Some(lights)) if part < shapes && lights.is_flat(emitter) => {
+                (emitter, Some(lights)) if part < shapes && lights.is_plain(emitter) => {
                     Emitted::Flat(FlatLight {
                         emitter,
                         radiance: lights.radiance(emitter),

@@ -186,6 +186,10 @@ impl BlueNoisePixel {
         tile: Range<u32>,
         places: &mut [[u64; TOGETHER]; SAMPLES],
     ) {
+        debug_assert!(
+            tile.start >= SHARED || tile.end <= SHARED,
+            "all of {tile:?} shared, or none"
+        );
         let samples = self.image.samples;
         let start = block.dimensions.start;
         let columns = (tile.start - start) as usize..(tile.end - start) as usize;
@@ -342,6 +346,44 @@ mod tests {
                         assert_eq!(cells.len() as u64, count, "{samples} {side} {level}");
                     }
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn pixels_share_some_dimensions_alone_with_those_of_their_square() {
+        let images: Vec<_> = (0..20)
+            .map(|seed| BlueNoise::new(1, seed).unwrap())
+            .collect();
+        let of = |image: &BlueNoise, pixel, dimension| {
+            let points: BlueNoisePixel = image.pixel(pixel);
+            points.coordinate(0, dimension)
+        };
+        // Whether the four pixels of a square have one quarter of the axis each.
+        let is_net = |image: &BlueNoise, dimension| {
+            let pixels = [[254, 2], [255, 2], [254, 3], [255, 3]];
+            let quarter = |pixel| (4.0 * of(image, pixel, dimension)).floor().to_bits();
+            let mut quarters = pixels.map(quarter);
+            quarters.sort_unstable();
+            quarters.windows(2).all(|pair| pair[0] < pair[1])
+        };
+        for dimension in [0, 7, 15] {
+            assert!(images.iter().all(|image| is_net(image, dimension)));
+        }
+        // By chance with a probability of 1e-20.
+        for dimension in [16, 17, 40] {
+            assert!(!images.iter().all(|image| is_net(image, dimension)));
+        }
+        for (one, other, dimension) in [
+            ([254, 3], [255, 3], 16),
+            ([254, 3], [255, 3], 17),
+            ([0, 3], [256, 3], 0),
+            ([0, 3], [256, 3], 15),
+            ([5, 0], [5, 256], 1),
+        ] {
+            for image in &images {
+                let [one, other] = [one, other].map(|pixel| of(image, pixel, dimension));
+                assert_ne!(one, other, "dimension {dimension}");
             }
         }
     }

@@ -44,11 +44,10 @@ impl AreaLights {
         choices: Vec::new(),
     };
 
-    /// Whether an emitter is flat and shines the same all over.
+    /// Whether an emitter is [plain](Emitter::is_plain).
     #[cfg(feature = "simd")]
-    pub(in crate::path) fn is_flat(&self, emitter: u32) -> bool {
-        let Emitter { shape, picture, .. } = &self.emitters[emitter as usize];
-        matches!(shape, Primitive::Flat(_)) && picture.is_none()
+    pub(in crate::path) fn is_plain(&self, emitter: u32) -> bool {
+        self.emitters[emitter as usize].is_plain()
     }
 
     /// The probability with which an emitter is chosen.

@@ -30,12 +30,8 @@ impl DirectionalLight {
     /// The light that arrives at the surface `from` if nothing is in the way; `None` if none does.
     #[inline]
     pub fn illuminate<D>(&self, from: &Surface<D>) -> Option<Illumination> {
-        Illumination::without_size(self.arriving(), || Some(self.way(from)))
-    }
-
-    #[inline]
-    pub(super) fn way<D>(&self, from: &Surface<D>) -> Segment {
-        Segment::along(from, self.toward)
+        let way = || Some(Segment::along(from, self.toward));
+        Illumination::without_size(self.arriving(), way)
     }
 
     /// The irradiance that a surface would have that faces it.

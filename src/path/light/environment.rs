@@ -25,8 +25,9 @@ pub trait Environment: Sync {
         None
     }
 
-    /// The sources and the background, if [`emitted`](Self::emitted) and [`sample`](Self::sample) are those of them in every
-    /// respect: where many paths are traced at once, a few are asked for all of them. `None` unless implemented.
+    /// The environment as [`Surroundings`], if [`emitted`](Self::emitted) and [`sample`](Self::sample) are theirs in every
+    /// respect: where many paths are traced at once, up to 16 sources without pictures are seen from all of them at once, unless a sky is behind
+    /// them. `None` unless implemented.
     fn as_surroundings(&self) -> Option<&Surroundings> {
         None
     }
@@ -73,13 +74,6 @@ impl Constant {
         Ok(Self {
             radiance: color::radiance(radiance)?,
         })
-    }
-}
-
-impl Constant {
-    #[cfg(feature = "simd")]
-    pub(super) fn radiance(&self) -> Vec3A {
-        self.radiance
     }
 }
 

@@ -29,18 +29,14 @@ impl PointLight {
     /// The light that arrives at the surface `from` if nothing is in the way; `None` if none does.
     #[inline]
     pub fn illuminate<D>(&self, from: &Surface<D>) -> Option<Illumination> {
-        Illumination::without_size(self.arriving(from.point), || self.way(from))
+        let way = || Segment::to_point(from, self.position);
+        Illumination::without_size(self.arriving(from.point), way)
     }
 
     /// The irradiance that a surface at `point` would have that faces it.
     #[inline]
     pub(super) fn arriving(&self, point: Vec3A) -> Vec3A {
         from_point(point, self.position, self.intensity)
-    }
-
-    #[inline]
-    pub(super) fn way<D>(&self, from: &Surface<D>) -> Option<Segment> {
-        Segment::to_point(from, self.position)
     }
 }
 

@@ -15,7 +15,7 @@ use crate::path::{Segment, Surface};
 /// A point that throws a picture into a pyramid: the reverse of a [`Pinhole`](crate::path::sensor::Pinhole) camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProjectorLight {
-    position: Vec3A,
+    pub(super) position: Vec3A,
     axis: Vec3A,
     scale: f32,
     slide: Slide,
@@ -54,12 +54,8 @@ impl ProjectorLight {
     /// The light that arrives at the surface `from` if nothing is in the way; `None` if none does.
     #[inline]
     pub fn illuminate<D>(&self, from: &Surface<D>) -> Option<Illumination> {
-        Illumination::without_size(self.arriving(from.point), || self.way(from))
-    }
-
-    #[inline]
-    pub(super) fn way<D>(&self, from: &Surface<D>) -> Option<Segment> {
-        Segment::to_point(from, self.position)
+        let way = || Segment::to_point(from, self.position);
+        Illumination::without_size(self.arriving(from.point), way)
     }
 
     /// The irradiance that a surface at `point` would have that faces it.

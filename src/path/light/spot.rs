@@ -88,12 +88,8 @@ impl SpotLight {
     /// The light that arrives at the surface `from` if nothing is in the way; `None` if none does.
     #[inline]
     pub fn illuminate<D>(&self, from: &Surface<D>) -> Option<Illumination> {
-        Illumination::without_size(self.arriving(from.point), || self.way(from))
-    }
-
-    #[inline]
-    pub(super) fn way<D>(&self, from: &Surface<D>) -> Option<Segment> {
-        Segment::to_point(from, self.position)
+        let way = || Segment::to_point(from, self.position);
+        Illumination::without_size(self.arriving(from.point), way)
     }
 
     /// The irradiance that a surface at `point` would have that faces it.

@@ -35,7 +35,7 @@ impl Source {
     /// The light that arrives at the surface `from` if nothing is in the way; `None` if none does.
     #[inline]
     pub fn illuminate<D>(&self, from: &Surface<D>) -> Option<Illumination> {
-        Illumination::without_size(self.arriving(from.point), || self.way(from))
+        Illumination::without_size(self.arriving(from.point), || self.place().way(from))
     }
 
     /// The irradiance that a surface at `point` would have that faces it.
@@ -49,14 +49,32 @@ impl Source {
         }
     }
 
+    #[inline]
+    fn place(&self) -> Place {
+        match self {
+            Self::Point(light) => Place::Near(light.position),
+            Self::Spot(light) => Place::Near(light.position),
+            Self::Directional(light) => Place::Far(light.toward),
+            Self::Projector(light) => Place::Near(light.position),
+        }
+    }
+}
+
+/// Where a source is.
+enum Place {
+    /// At a point.
+    Near(Vec3A),
+    /// In a direction.
+    Far(Vec3A),
+}
+
+impl Place {
     /// The way to it.
     #[inline]
     fn way<D>(&self, from: &Surface<D>) -> Option<Segment> {
-        match self {
-            Self::Point(light) => light.way(from),
-            Self::Spot(light) => light.way(from),
-            Self::Directional(light) => Some(light.way(from)),
-            Self::Projector(light) => light.way(from),
+        match *self {
+            Self::Near(position) => Segment::to_point(from, position),
+            Self::Far(direction) => Some(Segment::along(from, direction)),
         }
     }
 }
@@ -115,6 +133,9 @@ impl Surroundings {
     /// One of the sources, chosen by the coordinate `u`, with its weight over the probability of the choice.
     #[inline]
     fn choose_for<D>(&self, from: &Surface<D>, u: f64) -> Option<Illumination> {
+        if let [source] = &self.sources[..] {
+            return source.illuminate(from);
+        }
         let arriving = |source: &Source| source.arriving(from.point);
         let worths = self.sources.iter().map(|source| {
             let weight = arriving(source);
@@ -122,14 +143,14 @@ impl Surroundings {
         });
         let (chosen, factor) = choose(worths, u)?;
         let source = &self.sources[chosen];
-        Illumination::without_size(arriving(source) * factor, || source.way(from))
+        Illumination::without_size(arriving(source) * factor, || source.place().way(from))
     }
 }
 
-/// What an irradiance is worth when a source is chosen: its luminance.
+/// What an irradiance is worth when a source is chosen: half its luminance, which is finite.
 #[inline(always)]
 fn worth<T: Mul<f32, Output = T> + Add<Output = T>>(red: T, green: T, blue: T) -> T {
-    red * LUMINANCE.x + green * LUMINANCE.y + blue * LUMINANCE.z
+    red * (0.5 * LUMINANCE.x) + green * (0.5 * LUMINANCE.y) + blue * (0.5 * LUMINANCE.z)
 }
 
 /// The place of one that the coordinate `u` chooses in proportion to what they are `worth`, and one over the probability of it.
@@ -273,6 +294,29 @@ mod tests {
             let bound = error * 5.0 + (all + more) * 1e-4;
             assert!(off.cmple(bound).all(), "{sum} {}", all + more);
         }
+    }
+
+    #[test]
+    fn a_coordinate_chooses_by_worth() {
+        let last = 1.0 - 0.5 * f64::EPSILON;
+        let of = |worths: &[f32], u| choose(worths.iter().copied(), u);
+        for (u, chosen) in [
+            (0.0, (1, 4.0)),
+            (0.249, (1, 4.0)),
+            (0.25, (3, 4.0 / 3.0)),
+            (last, (3, 4.0 / 3.0)),
+        ] {
+            assert_eq!(of(&[0.0, 1.0, 0.0, 3.0, 0.0], u), Some(chosen), "{u}");
+        }
+        for u in [0.0, last] {
+            assert_eq!(
+                (of(&[2.0], u), of(&[0.0; 2], u), of(&[], u)),
+                (Some((0, 1.0)), None, None)
+            );
+        }
+        let most = worth(f32::MAX, f32::MAX, f32::MAX);
+        assert!(most.is_finite());
+        assert_eq!(of(&[most, most], 0.5), Some((1, 2.0)));
     }
 
     #[test]

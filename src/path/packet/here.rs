@@ -71,7 +71,7 @@ impl<S: Simd> Here<'_, S> {
         chance.ge(chance.all(0.0))
     }
 
-    /// Where the view is asked what is emitted, if anything is.
+    /// Where the view is asked what is emitted, if anything is; so it may be where lights are never chosen.
     #[inline(always)]
     pub(super) fn is_asked(&self) -> Mask<S> {
         let chance = self.place.chance;

@@ -11,8 +11,8 @@ use crate::path::frame::single;
 use crate::path::geometry::FEW;
 use crate::path::light::{
     AreaLights, Background, Constant, DirectionalLight, Emission, Emitter, Environment,
-    Illumination, Light, LightTree, NoEnvironment, NoLight, PointLight, Sky, Source, SpotLight,
-    Surroundings,
+    Illumination, Light, LightTree, NoEnvironment, NoLight, PointLight, ProjectorLight, Sky,
+    Source, SpotLight, Surroundings,
 };
 use crate::path::reuse::{self, Group, MOST, Part, Pixels, Traces, WIDTH};
 use crate::path::roulette::Rule;
@@ -584,7 +584,7 @@ fn packets_give_the_bits_of_single_paths_among_lights_of_any_kind() {
 
 #[test]
 fn packets_give_the_bits_of_single_paths_among_sources_without_size() {
-    let times_around = |times, background| {
+    let some_around = |count, background| {
         let bulb = PointLight::new([0.6, 0.9, 0.7], [3.0, 2.0, 1.0]).unwrap();
         let sun = DirectionalLight::new([0.3, -1.0, 0.2], [1.0, 0.9, 0.8]).unwrap();
         let spot = SpotLight::new([-0.4, 1.9, 0.9], [0.1, -1.0, -0.3], [4.0; 3], 15.0, 50.0);
@@ -593,18 +593,40 @@ fn packets_give_the_bits_of_single_paths_among_sources_without_size() {
             Source::Directional(sun),
             Source::Spot(Box::new(spot.unwrap())),
         ];
-        let sources = (0..times).flat_map(|_| sources.clone()).collect();
-        Surroundings::new(sources, background).unwrap()
+        let sources = sources.iter().cycle().take(count).cloned();
+        Surroundings::new(sources.collect(), background).unwrap()
     };
-    let around = |background| times_around(1, background);
+    let around = |background| some_around(3, background);
     let grey = Uniform::from(0.4);
     let sky = Constant::new([0.2, 0.3, 0.4]).unwrap();
     agree(&balls::<_, AreaLights, _>(true, grey, around(Background::None)).unwrap());
     agree(&balls::<_, NoLight, _>(false, grey, around(Background::Constant(sky))).unwrap());
     agree::<_, AreaLights, _>(&room(true, around(Background::Constant(sky))).unwrap());
     agree::<_, AreaLights, _>(&lights(around(Background::None)).unwrap());
-    // More than are seen at once.
-    agree::<_, AreaLights, _>(&lights(times_around(6, Background::None)).unwrap());
+    // As many as are seen at once, and one more.
+    for count in [1, 16, 17] {
+        agree::<_, AreaLights, _>(&lights(some_around(count, Background::None)).unwrap());
+    }
+    let picture = || {
+        let colors = [0.9, 0.1].map(|color| Uniform::from(color).into());
+        Texture::from(Checkerboard::new(
+            colors,
+            Affine2::from_scale(Vec2::splat(4.0)),
+        ))
+    };
+    let (place, down) = ([-0.4, 1.9, 0.9], [0.1, -1.0, -0.3]);
+    let (across, below) = ([1.0, 0.1, 0.0], [0.0, -0.3, 1.0]);
+    let slide = SpotLight::new(place, down, [4.0; 3], 15.0, 50.0);
+    let slide = slide.unwrap().projecting(picture(), across, below).unwrap();
+    let projector =
+        ProjectorLight::new(place, down, [across, below], [0.5, 0.6], picture(), 2.0).unwrap();
+    for source in [
+        Source::Spot(Box::new(slide)),
+        Source::Projector(Box::new(projector)),
+    ] {
+        let around = Surroundings::new(vec![source], Background::None).unwrap();
+        agree::<_, AreaLights, _>(&lights(around).unwrap());
+    }
     agree::<_, LightTree, _>(&lights(around(Background::None)).unwrap());
     let diffuse = Lambertian::new([0.3, 0.9, 0.5]).unwrap();
     agree(&copies(&diffuse, around(Background::None)).unwrap());
@@ -651,5 +673,26 @@ fn scenes_of_many_shapes_have_no_packets() {
         let object = Object::<Lambertian>::new(balls, Lambertian::new([0.5; 3]).unwrap());
         let scene: Scene<_, NoLight, _> = Scene::new(vec![object], NoEnvironment).unwrap();
         assert_eq!(scene.packet().is_some(), count == FEW);
+    }
+}
+
+/// Lamps, and a mesh that shines beside them.
+#[test]
+fn packets_give_the_bits_of_single_paths_where_lamps_leave_no_room_for_others() {
+    let white = Lambertian::new([0.7; 3]).unwrap();
+    let corners = vec![[-0.5, 0.1, 0.4], [0.5, 0.2, 0.3], [0.0, 0.9, 0.1]];
+    for count in [FEW - 1, FEW] {
+        let tile = |k: usize| {
+            let x = 4.0 * k as f32 / count as f32 - 2.0;
+            Flat::parallelogram([x, -0.7, 2.0], [0.03, 0.0, 0.0], [0.0, 0.0, -4.0]).unwrap()
+        };
+        let mesh = Mesh::new(corners.clone(), vec![[0, 1, 2], [2, 1, 0]]).unwrap();
+        let lamps = Object::<Lambertian>::new((0..count).map(tile), white);
+        let objects = vec![
+            lamps.emitting([0.3; 3]).unwrap(),
+            Object::mesh(mesh, white).emitting([2.0, 1.0, 3.0]).unwrap(),
+        ];
+        let scene: Scene<_, AreaLights, _> = Scene::new(objects, NoEnvironment).unwrap();
+        agree(&seen_from([0.1, 1.0, 3.0], 60.0, scene).unwrap());
     }
 }

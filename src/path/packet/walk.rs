@@ -221,22 +221,19 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         let varying = !PLAIN && packet.varying;
         let hits = (asks || varying).then(|| here.hits(&packet.table, &state.direction));
         // Emitted light, met by a direction that was drawn at the surface before.
-        let mut lit = met & here.shines();
-        if !asks_lights {
-            lit = lit & here.faces(origin);
-        }
+        let shines = met & here.shines();
+        let to_be_asked = (asks_lights || some_asked).then(|| shines & here.is_asked());
+        let faces = here.faces(origin);
+        let (known, lit) = match to_be_asked {
+            Some(asked) => (shines & !asked & faces, shines & (asked | faces)),
+            None => (shines & faces, shines & faces),
+        };
         if lit.any() {
-            let asked = match (asks_lights, some_asked) {
-                (true, _) => Some(lit),
-                (false, true) => Some(lit & here.is_asked()),
-                (false, false) => None,
+            let (mut emitted, mut other) = match asks_lights {
+                true => (Vector::splat(simd, Vec3A::ZERO), zero),
+                false => packet.emitted(simd, &here, origin, known),
             };
-            let (mut emitted, mut other) = match asked {
-                Some(_) if asks_lights => (Vector::splat(simd, Vec3A::ZERO), zero),
-                Some(asked) => packet.emitted(simd, &here, origin, lit & !asked),
-                None => packet.emitted(simd, &here, origin, lit),
-            };
-            if let (Some(asked), Some(hits)) = (asked, &hits) {
+            if let (Some(asked), Some(hits)) = (to_be_asked, &hits) {
                 let light = hits.emitted(self.single, &state.origin, &asked.row(simd));
                 emitted = asked.choose(light.weight(simd), emitted);
                 other = asked.select(light.density(simd), other);

@@ -101,10 +101,7 @@ impl<B> Parts<B> {
 impl<B> Parts<B> {
     /// Whether only what is flat emits light, the same all over.
     pub(super) fn lights_are_flat(&self) -> bool {
-        let lamp = |emitter: &Emitter| {
-            emitter.picture.is_none() && matches!(emitter.shape, Primitive::Flat(_))
-        };
-        self.emitters.iter().all(lamp)
+        self.emitters.iter().all(Emitter::is_plain)
     }
 }
 

@@ -20,8 +20,8 @@ pub(crate) struct Surfaces<B> {
     pub(super) owners: Vec<Owner>,
     pub(super) bsdfs: Vec<B>,
     pub(super) emitters: Vec<Emitter>,
-    /// Whether paths go many at once, and all lights are such as are drawn in lanes then, unless their type is not: those that are not are drawn
-    /// one lane after the other, by solid angle, which takes little time beside it.
+    /// Whether paths go many at once, and all lights are drawn in lanes then, unless their type is another: no emitter is drawn one lane after the
+    /// other.
     pub(super) lights_in_lanes: bool,
 }
 

@@ -49,7 +49,7 @@ fn erf(x: f32, gauss: f32) -> f32 {
 ///
 /// Its slope along `v` has the density `(cosine - x sine) exp(-x^2)` up to the slope where facets turn away; its
 /// distribution function is inverted in `erf(x)`,[^jakob] by Halley's method, from between the solutions for a vertical `v` and a horizontal one:
-/// four in five times one step does, where Newton's method from the latter takes two or three.
+/// over all cosines and coordinates, one step or none does in nineteen of twenty; Newton's method from the latter takes two or three.
 ///
 /// [^jakob]: Jakob, Wenzel (2014). *An Improved Visible Normal Sampling Routine for the Beckmann Distribution*.
 ///     <https://www.mitsuba-renderer.org/~wenzel/files/visnormal.pdf>
@@ -59,6 +59,7 @@ pub(super) fn sample(v: Vec3A, u: [f32; 2]) -> Vec3A {
     const EDGE: f32 = 0.5 * f32::EPSILON;
     let [a, b] = u.map(|u| u.clamp(EDGE, 1.0 - EDGE));
     let cosine = v.z;
+    // Where the squares have few digits, so has the part that it plays.
     let sine = (v.x * v.x + v.y * v.y).sqrt();
     let last = cosine / sine;
     let tail = |gauss: f32| sine * FRAC_1_SQRT_PI * gauss;
@@ -188,11 +189,13 @@ mod tests {
             let integral = |x: f64| {
                 c * (1.0 + libm::erf(x)) + s * (-x * x).exp() / core::f64::consts::PI.sqrt()
             };
-            for i in 1..200_u8 {
-                let a = f32::from(i) / 200.0;
+            let inner = (1..200_u8).map(|i| f32::from(i) / 200.0);
+            let tails = [f32::EPSILON, 1e-4, 1.0 - 1e-4, 1.0 - 0.5 * f32::EPSILON];
+            for a in inner.chain(tails) {
                 let m = sample(v, [a, 0.5]);
                 let u = integral(f64::from(-m.x)) / integral(if s > 0.0 { c / s } else { 9.0 });
-                assert!((u - f64::from(a)).abs() < 2e-5, "{cosine} {a}: {u}");
+                // As near as steps are asked to bring it, and the error functions.
+                assert!((u - f64::from(a)).abs() < 3e-6, "{cosine} {a}: {u}");
             }
         }
     }

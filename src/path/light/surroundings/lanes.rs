@@ -5,10 +5,10 @@ use core::f32::consts::TAU;
 use glam::Vec3A;
 use pulp::{Arch, Simd, WithSimd};
 
-use super::{Background, Source, Surroundings, choose, worth};
+use super::{Background, Place, Source, Surroundings, choose, worth};
 use crate::path::frame::lanes::turns;
 use crate::path::lanes::{Mask, Row, Vector, WIDEST};
-use crate::path::light::SpotLight;
+use crate::path::light::{Environment, SpotLight};
 
 /// The most sources that are seen at once.
 const MOST: usize = 16;
@@ -35,13 +35,13 @@ impl Surroundings {
         match &self.background {
             _ if !(few && self.sources.iter().all(known)) => None,
             Background::None => Some(Vec3A::ZERO),
-            Background::Constant(constant) => Some(constant.radiance()),
+            Background::Constant(constant) => constant.constant(),
             Background::Sky(_) => None,
         }
     }
 
-    /// Whether a coordinate chooses among them.
-    pub(in crate::path) fn choose(&self) -> bool {
+    /// Whether there are several sources, among which a coordinate chooses.
+    pub(in crate::path) fn are_several(&self) -> bool {
         self.sources.len() > 1
     }
 
@@ -73,11 +73,9 @@ impl Surroundings {
             };
             let weight = Row::vector(&arriving[source].weight, lane) * factor;
             Row::set_vector(&mut chosen.weight, lane, weight);
-            let (from, far) = match &self.sources[source] {
-                Source::Point(light) => (light.position, 0.0),
-                Source::Spot(light) => (light.position, 0.0),
-                Source::Directional(light) => (light.toward, 1.0),
-                Source::Projector(_) => continue,
+            let (from, far) = match self.sources[source].place() {
+                Place::Near(position) => (position, 0.0),
+                Place::Far(direction) => (direction, 1.0),
             };
             Row::set_vector(&mut chosen.from, lane, from);
             chosen.far.0[lane] = far;

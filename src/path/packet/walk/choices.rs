@@ -49,7 +49,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
                 if let (Some(hits), Some(around)) = (hits, &mut draws.around) {
                     around.set(lane, self.single.around(&hits.hit(lane), sampler));
                 }
-                if self.sources.is_some_and(Surroundings::choose) {
+                if self.sources.is_some_and(Surroundings::are_several) {
                     draws.choices[lane] = sampler.next_1d();
                 }
                 if self.sky.is_some() {
@@ -71,7 +71,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         u.map(|row| Real::load(simd, &row))
     }
 
-    /// The same where all laws are ideally diffuse, the view is asked for no light, and no picture is around.
+    /// The same where all laws are ideally diffuse, the view is asked for no light, and neither a picture nor sources are around.
     #[inline(always)]
     pub(super) fn draw_diffuse<S: Simd>(
         &mut self,

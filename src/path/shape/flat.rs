@@ -224,7 +224,7 @@ impl Flat {
     /// points closer to its plane than a hundredth of the longest edge, and all points in front of shapes thinner than a fiftieth of it, where `f32` has
     /// too few digits, and of parallelograms that are no rectangles.
     ///
-    /// The scene does this to its lights; to those of scenes whose shapes could be traced many paths at once, only if an eighth of the
+    /// The scene does this to its lights; to those of scenes that could be traced many paths at once, and have no lights of other kinds, only if an eighth of the
     /// light that meets anything does so close to them.
     ///
     /// ```

@@ -154,6 +154,7 @@ impl PointSet for BlueNoisePixel {
         Some(1 << self.image.samples)
     }
 
+    #[expect(clippy::cast_possible_truncation, reason = "a small number")]
     fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
         let mut block = Block::new(first, dimensions, out, u32::MAX, 0);
         // For all tiles: it takes a while to clear it.

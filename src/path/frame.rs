@@ -4,6 +4,7 @@
 pub(in crate::path) mod lanes;
 
 use core::f32::consts::{FRAC_1_PI, FRAC_PI_4};
+use core::ops::{Add, Mul};
 
 use glam::Vec3A;
 
@@ -143,6 +144,19 @@ const ARC_TANGENT: [f32; 8] = [
     -0.000_746_992_36,
 ];
 
+/// Its value, for single numbers and one a lane. The terms go in pairs, which do not wait for one another.
+#[inline(always)]
+fn arc_tangent<T>(square: T) -> T
+where
+    T: Copy + Mul<Output = T> + Mul<f32, Output = T> + Add<Output = T> + Add<f32, Output = T>,
+{
+    let [a, b, c, d, e, f, g, h] = ARC_TANGENT;
+    let fourth = square * square;
+    let low = (square * b + a) + (square * d + c) * fourth;
+    let high = (square * f + e) + (square * h + g) * fourth;
+    low + high * (fourth * fourth)
+}
+
 /// The angle of the point `(x, y)` in turns, counted from the x axis towards the y axis: in `[0, 1]`, within 2e-7, and 0 for the
 /// origin. The inverse of [`turn`].
 #[inline]
@@ -155,10 +169,7 @@ pub(in crate::path) fn turns(y: f32, x: f32) -> f32 {
     };
     let q = if large > 0.0 { low / large } else { 0.0 };
     let s = q * q;
-    let eighth = q * ARC_TANGENT
-        .into_iter()
-        .rev()
-        .fold(0.0, |sum, term| sum * s + term);
+    let eighth = q * arc_tangent(s);
     let quarter = if high > wide { 0.25 - eighth } else { eighth };
     let half = if x < 0.0 { 0.5 - quarter } else { quarter };
     if y < 0.0 { 1.0 - half } else { half }

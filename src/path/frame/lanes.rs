@@ -4,7 +4,7 @@ use core::f32::consts::FRAC_PI_2;
 
 use pulp::Simd;
 
-use super::ARC_TANGENT;
+use super::arc_tangent;
 use crate::path::lanes::Real;
 
 /// As [`turn`](super::turn).
@@ -47,11 +47,7 @@ pub(in crate::path) fn turns<S: Simd>(y: Real<S>, x: Real<S>) -> Real<S> {
     let some = large.gt(zero);
     let q = some.select(low / some.select(large, one), zero);
     let s = q * q;
-    let mut series = zero;
-    for term in ARC_TANGENT.into_iter().rev() {
-        series = series * s + term;
-    }
-    let eighth = q * series;
+    let eighth = q * arc_tangent(s);
     let quarter = steep.select(0.25 - eighth, eighth);
     let half = x.lt(zero).select(0.5 - quarter, quarter);
     y.lt(zero).select(1.0 - half, half)

@@ -386,7 +386,7 @@ fn packets_give_the_bits_of_single_paths_near_a_lamp() {
         let floor = Flat::parallelogram([-4.0, 0.0, 4.0], [8.0, 0.0, 0.0], [0.0, 0.0, -8.0])?;
         let half = 0.5 * size;
         let corner = [-half, 0.8, -half];
-        let tile = [[size, 0.0, 0.0], [0.0, 0.0, size]];
+        let tile = [[0.9 * size, 0.0, 0.0], [0.0, 0.0, size]];
         let corners = [corner, [half, 0.8, -half], [-half, 0.8, half]];
         Ok(vec![
             Object::new([floor], white),

@@ -75,7 +75,7 @@ pub(super) fn sample(v: Vec3A, u: [f32; 2]) -> Vec3A {
     let horizontal = greatest - (1.0 + greatest) * erf((-a.ln()).sqrt(), a);
     let mut at = within(vertical + (horizontal - vertical) * sine);
     let mut along = inverse_erf(at);
-    for _ in 0..3 {
+    for _ in 0..2 {
         let gauss = (-along * along).exp();
         let excess = cosine * (1.0 + at) + tail(gauss) - a * total;
         let slope = cosine - along * sine;

@@ -139,3 +139,86 @@ impl<S: Simd> Rectangle<S> {
         ]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use core::array::from_fn;
+
+    use glam::Vec3A;
+    use pulp::{Arch, WithSimd};
+
+    use super::super::{Near, Outline};
+    use super::*;
+    use crate::hash::{hash, unit_f32};
+    use crate::path::shape::Flat;
+
+    /// One look at a rectangle.
+    struct Look {
+        flat: Flat,
+        from: Vec3A,
+        u: [f32; 2],
+    }
+
+    impl WithSimd for Look {
+        /// The bits of the coordinates and of the density, if it is near.
+        type Output = Option<[u32; 3]>;
+
+        fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+            let Self { flat, from, u } = self;
+            let real = |number| Real::splat(simd, number);
+            let vector = |vector| Vector::splat(simd, vector);
+            let corner = vector(flat.corner) - vector(from);
+            let height = -corner.dot(vector(flat.normal));
+            let edges = [flat.first_edge, flat.second_edge];
+            let lengths = edges.map(Vec3A::length);
+            let to_middle = corner + (vector(edges[0]) + vector(edges[1])) * real(0.5);
+            let longest = real(lengths[0].max(lengths[1]));
+            if !are_near(to_middle, real(flat.area), height, longest).any() {
+                return None;
+            }
+            let rectangle = Rectangle::new(corner, edges.map(vector), lengths.map(real), height);
+            let [s, t] = rectangle.sample(u.map(real));
+            Some([s, t, rectangle.density()].map(|number| number.row().0[0].to_bits()))
+        }
+    }
+
+    #[test]
+    fn lanes_have_the_bits_of_single_rectangles() {
+        let mut near = [0; 2];
+        for seed in 0..4000 {
+            let unit = |word| unit_f32(hash(seed, word));
+            let flat = Flat::parallelogram(
+                [unit(0), unit(1), unit(2)],
+                [0.1 + unit(3), 0.0, 0.0],
+                [0.0, 0.1 + unit(4), 0.0],
+            );
+            // A half of the points close to the plane, about where it becomes too close.
+            let (flat, close) = (flat.unwrap(), seed % 2 == 0);
+            let over = flat.corner
+                + flat.first_edge * (2.0 * unit(5) - 0.5)
+                + flat.second_edge * (2.0 * unit(6) - 0.5);
+            let height = if close { 0.02 } else { 2.0 } * (unit(7) - 0.1);
+            let from = over + flat.normal * height;
+            let u = from_fn(|axis| unit(8 + axis as u64));
+            let expected = Outline::of(&flat).unwrap().near(&flat, from).map(|seen| {
+                let Near::Rectangle(rectangle) = seen else {
+                    panic!("{seen:?} is none");
+                };
+                let [s, t] = rectangle.sample(u);
+                [s, t, rectangle.solid_angle.recip()].map(f32::to_bits)
+            });
+            let look = || Look { flat, from, u };
+            assert_eq!(
+                Arch::new().dispatch(look()),
+                expected,
+                "{flat:?} {from} {u:?}"
+            );
+            assert_eq!(look().with_simd(pulp::Scalar), expected);
+            near[usize::from(close)] += usize::from(expected.is_some());
+        }
+        assert!(
+            near.iter().all(|count| (100..1900).contains(count)),
+            "{near:?}"
+        );
+    }
+}

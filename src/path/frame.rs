@@ -144,7 +144,7 @@ const ARC_TANGENT: [f32; 8] = [
     -0.000_746_992_36,
 ];
 
-/// Its value, for single numbers and one a lane. The terms go in pairs, which do not wait for one another.
+/// The value of the polynomial [`ARC_TANGENT`] at a square, for single numbers and one a lane. The terms go in pairs, which do not wait for one another.
 #[inline(always)]
 fn arc_tangent<T>(square: T) -> T
 where

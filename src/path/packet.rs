@@ -122,7 +122,7 @@ impl Packet {
         // Which part a lane is at is kept in 32 bits, as the trees keep triangles and copies.
         u32::try_from(parts).ok()?;
         let mut known: Vec<_> = (0..parts).map(optics).collect();
-        let lights = lights.and_then(|lights| in_lanes(lights, &mut known, flats.len()));
+        let lights = lights.and_then(|lights| lights_or_ask(lights, &mut known, flats.len()));
         let first = u32::try_from(flats.len()).ok()?;
         let laws = || known.iter().map(|optics| &optics.law);
         let mut packet = Self {
@@ -254,21 +254,20 @@ impl Packet {
     }
 }
 
-/// The lights, if any are drawn in lanes or there are none; otherwise the scene is told to ask for all. `flats` is how many shapes are flat.
-fn in_lanes<'a>(
+/// The lights, if any are drawn in lanes or there are none; otherwise it is told of all of them that they are to be asked for. `flats` is
+/// how many shapes are flat.
+fn lights_or_ask<'a>(
     lights: &'a AreaLights,
     known: &mut [Optics],
     flats: usize,
 ) -> Option<&'a AreaLights> {
-    let is_flat = |optics: &&mut Optics| matches!(optics.emitted, Emitted::Flat(_));
-    let (flat, all) = (
-        known.iter_mut().filter(is_flat).count(),
-        lights.shapes().count(),
-    );
+    let all = lights.shapes().count();
+    let flat = known.iter().filter(|optics| optics.emitted.is_flat());
+    let flat = flat.count();
     if flat == all || flat > 0 && flats < MOST {
         return Some(lights);
     }
-    for optics in known.iter_mut().filter(is_flat) {
+    for optics in known.iter_mut().filter(|optics| optics.emitted.is_flat()) {
         optics.emitted = Emitted::Asked;
     }
     None

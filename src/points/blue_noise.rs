@@ -20,8 +20,8 @@ use curve::{Curve, SAMPLES};
 /// samples a pixel it looks markedly better than independent pixels; the error of a single pixel is the same. The
 /// benefit is lost when rendering stops before all samples of a pixel are taken.
 ///
-/// Pixels complement one another in the first 16 dimensions, which decide most of an image, and within squares of 256 pixels. Otherwise their
-/// nets know nothing of one another, which takes a third of the time where coordinates are computed one by one.
+/// Pixels complement one another in the first 16 dimensions, which decide most of an image, and within squares of 256 by 256 pixels. Otherwise their
+/// nets know nothing of one another, which takes about half the time where coordinates are computed one by one.
 ///
 /// Dimensions come in pairs, each a net of its own in two dimensions with an order of its own: any number of them.
 /// [`pixel`](Self::pixel) gives the points of one pixel.

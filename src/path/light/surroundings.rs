@@ -49,6 +49,7 @@ impl Source {
         }
     }
 
+    /// Where it is.
     #[inline]
     fn place(&self) -> Place {
         match self {
@@ -133,9 +134,6 @@ impl Surroundings {
     /// One of the sources, chosen by the coordinate `u`, with its weight over the probability of the choice.
     #[inline]
     fn choose_for<D>(&self, from: &Surface<D>, u: f64) -> Option<Illumination> {
-        if let [source] = &self.sources[..] {
-            return source.illuminate(from);
-        }
         let arriving = |source: &Source| source.arriving(from.point);
         let worths = self.sources.iter().map(|source| {
             let weight = arriving(source);

@@ -22,6 +22,10 @@ pub(in crate::path) enum Emitted {
 }
 
 impl Emitted {
+    pub(super) fn is_flat(&self) -> bool {
+        matches!(self, Self::Flat(_))
+    }
+
     /// Of a flat light the probability with which it is chosen; [`DARK`] if nothing is emitted, which is negative.
     pub(super) fn chance(&self) -> f32 {
         match self {

@@ -229,9 +229,10 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             None => (shines & faces, shines & faces),
         };
         if lit.any() {
-            let (mut emitted, mut other) = match asks_lights {
-                true => (Vector::splat(simd, Vec3A::ZERO), zero),
-                false => packet.emitted(simd, &here, origin, known),
+            let (mut emitted, mut other) = if asks_lights {
+                (Vector::splat(simd, Vec3A::ZERO), zero)
+            } else {
+                packet.emitted(simd, &here, origin, known)
             };
             if let (Some(asked), Some(hits)) = (to_be_asked, &hits) {
                 let light = hits.emitted(self.single, &state.origin, &asked.row(simd));

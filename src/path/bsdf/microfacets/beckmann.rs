@@ -59,7 +59,6 @@ pub(super) fn sample(v: Vec3A, u: [f32; 2]) -> Vec3A {
     const EDGE: f32 = 0.5 * f32::EPSILON;
     let [a, b] = u.map(|u| u.clamp(EDGE, 1.0 - EDGE));
     let cosine = v.z;
-    // Where the squares have few digits, so has the part that it plays.
     let sine = (v.x * v.x + v.y * v.y).sqrt();
     let last = cosine / sine;
     let tail = |gauss: f32| sine * FRAC_1_SQRT_PI * gauss;
@@ -88,7 +87,8 @@ pub(super) fn sample(v: Vec3A, u: [f32; 2]) -> Vec3A {
         along = inverse_erf(at);
     }
     let across = inverse_erf(2.0 * b - 1.0);
-    let (x, y) = if sine > 0.0 {
+    // Below it the squares have few digits; there all directions are alike.
+    let (x, y) = if sine > 1e-18 {
         (v.x / sine, v.y / sine)
     } else {
         (1.0, 0.0)

@@ -202,7 +202,7 @@ mod tests {
             let u = from_fn(|axis| unit(8 + axis as u64));
             let expected = Outline::of(&flat).unwrap().near(&flat, from).map(|seen| {
                 let Near::Rectangle(rectangle) = seen else {
-                    panic!("{seen:?} is none");
+                    panic!("{seen:?} is no rectangle");
                 };
                 let [s, t] = rectangle.sample(u);
                 [s, t, rectangle.solid_angle.recip()].map(f32::to_bits)

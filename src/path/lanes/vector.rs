@@ -93,7 +93,12 @@ impl<S: Simd> Mask<S> {
     /// `yes` where it holds, `no` elsewhere.
     #[inline(always)]
     pub(in crate::path) fn choose(self, yes: Vector<S>, no: Vector<S>) -> Vector<S> {
-        yes.zip(no, |yes, no| self.select(yes, no))
+        // Not by a closure: compilers do not always make it part of the loop, and then it is a call.
+        Vector {
+            x: self.select(yes.x, no.x),
+            y: self.select(yes.y, no.y),
+            z: self.select(yes.z, no.z),
+        }
     }
 }
 

@@ -260,7 +260,7 @@ fn copies<B: Bsdf + Clone + From<Lambertian>, E: Environment>(
 ) -> Result<View<B, AreaLights, E, Pinhole>, Error> {
     let white = B::from(Lambertian::new([0.7, 0.5, 0.9])?);
     let ground = Flat::parallelogram([-4.0, -0.8, 4.0], [8.0, 0.0, 0.0], [0.0, 0.0, -8.0])?;
-    let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])?;
+    let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.2])?;
     let round = || -> Result<Vec<Primitive>, Error> {
         Ok(vec![
             Cylinder::new([-0.6, -0.6, 0.0], [0.1, 0.8, 0.2], 0.3)?.into(),
@@ -430,7 +430,7 @@ fn balls<P: Parameter + From<Uniform>, L: Light, E: Environment>(
         TwoSided::different(Diffuse::new(tiles)?.into(), white.clone()).into(),
     ];
     let ground = Flat::parallelogram([-4.0, 0.0, 4.0], [8.0, 0.0, 0.0], [0.0, 0.0, -8.0])?;
-    let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])?;
+    let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.2])?;
     let lamp = Object::new([lamp], white.clone());
     let mut objects = vec![
         Object::new([ground], white),
@@ -491,7 +491,7 @@ fn packets_give_the_bits_of_single_paths_where_only_albedos_vary() {
     };
     let view = |environment| {
         let ground = Flat::parallelogram([-4.0, 0.0, 4.0], [8.0, 0.0, 0.0], [0.0, 0.0, -8.0])?;
-        let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])?;
+        let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.2])?;
         let wall = Flat::parallelogram([-1.0, 0.0, -1.0], [2.0, 0.0, 0.2], [0.0, 1.5, 0.0])?;
         let both = TwoSided::new(Material::from(tiles(3.0)));
         let grey: Material<Texture> = Lambertian::new([0.3; 3])?.into();
@@ -544,7 +544,7 @@ fn lights<L: Light, E: Environment>(
     let white = Lambertian::new([0.7, 0.5, 0.9])?;
     let mirror = Mirror::new([0.9; 3])?;
     let ground = Flat::parallelogram([-4.0, -0.8, 4.0], [8.0, 0.0, 0.0], [0.0, 0.0, -8.0])?;
-    let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0])?;
+    let lamp = Flat::parallelogram([-0.5, 2.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.2])?;
     let screen = Flat::parallelogram([-2.0, -0.5, -1.0], [1.5, 0.0, -1.0], [0.0, 1.5, 0.0])?;
     let mut random = (0..).map(|state| unit_f32(hash(16, state)));
     let mut vector = || [0; 3].map(|_| 1.4 * random.next().unwrap() - 0.7);

@@ -234,7 +234,9 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             } else {
                 packet.emitted(simd, &here, origin, known)
             };
-            if let (Some(asked), Some(hits)) = (to_be_asked, &hits) {
+            if let (Some(asked), Some(hits)) = (to_be_asked, &hits)
+                && asked.any()
+            {
                 let light = hits.emitted(self.single, &state.origin, &asked.row(simd));
                 emitted = asked.choose(light.weight(simd), emitted);
                 other = asked.select(light.density(simd), other);

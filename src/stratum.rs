@@ -10,7 +10,7 @@ mod parts;
 mod together;
 mod walk;
 
-pub(crate) use apportion::{apportion, counts, evenly};
+pub(crate) use apportion::{apportion, between, evenly};
 pub(crate) use together::Stratified;
 pub(crate) use walk::{Look, Rows, Run, Visitor, Walk};
 

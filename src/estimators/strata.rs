@@ -3,7 +3,7 @@
 use crate::evaluate::Wide;
 use crate::points::Independent;
 use crate::progressive::at_once;
-use crate::stratum::{Rows, Stratified, Visited, Walk, apportion, counts, evenly};
+use crate::stratum::{Rows, Stratified, Visited, Walk, apportion, evenly};
 use crate::{
     Error, Estimate, Estimator, Integrand, NonFinite, Outcome, Progressive, Stop, Value, hash,
     reduce,
@@ -154,9 +154,11 @@ impl Strata {
         let each = self.pilot();
         let spent = each * self.strata as u64;
         let ends = if self.neyman {
-            let counts = vec![each; self.strata];
+            let ends: Vec<u64> = (1..=self.strata as u64)
+                .map(|strata| each * strata)
+                .collect();
             let seed = hash::hash(!self.seed, 0);
-            self.walk(pilot, counts, seed, integrand, evaluations)?;
+            self.walk(pilot, &ends, seed, integrand, evaluations)?;
             if evaluations <= spent {
                 return Ok(());
             }
@@ -164,20 +166,15 @@ impl Strata {
         } else {
             evenly(self.strata, self.count)
         };
-        self.walk(
-            main,
-            counts(&ends),
-            self.seed,
-            integrand,
-            evaluations - spent,
-        )
+        self.walk(main, &ends, self.seed, integrand, evaluations - spent)
     }
 
-    /// Goes on with a phase until `evaluations` of its points, or a few more, were evaluated, or all.
+    /// Goes on with a phase until `evaluations` of its points, or a few more, were evaluated, or all: `ends` are their numbers up to and
+    /// with each cell.
     fn walk<I: Integrand>(
         &self,
         phase: &mut Phase<Wide<I>>,
-        counts: Vec<u64>,
+        ends: &[u64],
         seed: u64,
         integrand: &I,
         evaluations: u64,
@@ -189,14 +186,15 @@ impl Strata {
         // A single cell is the cube.
         let axes = if self.cells > 1 { self.dimensions } else { 0 };
         let width = integrand.dimensions().min(WIDEST).max(axes);
-        let rounds = Rounds::new(counts);
+        let rounds = Rounds::new(ends);
+        let mut before = rounds.before(phase.rounds);
         while phase.rounds < rounds.number() {
-            let before = rounds.before(phase.rounds);
             if evaluations <= before {
                 break;
             }
             let seed = hash::hash(seed, u64::from(phase.rounds));
-            let walk = Walk::shuffled(&rounds.counts(phase.rounds), seed, LONGEST);
+            let counts = rounds.counts(phase.rounds);
+            let walk = Walk::shuffled(self.strata, counts, seed, LONGEST);
             let rows = Rows {
                 points: Independent::new(seed),
                 width,
@@ -214,6 +212,7 @@ impl Strata {
             if !walk.is_complete(&phase.visited) {
                 break;
             }
+            before += walk.points();
             phase.visited.again();
             phase.rounds += 1;
         }

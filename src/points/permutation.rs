@@ -49,17 +49,22 @@ impl Permutation {
     }
 }
 
-/// The images of all numbers below `count` under the random permutation that [`permute`](crate::hash::permute) makes of `key`.
+/// The images of all numbers below `count` under the random permutation that [`permute`](crate::hash::permute) makes of `key`:
+/// block after block, with what `look` finds in each of them.
 ///
 /// # Panics
 ///
 /// For a count above 2^32.
 #[expect(clippy::cast_possible_truncation, reason = "below 2^32")]
-pub(crate) fn permuted(count: u64, key: u64) -> Vec<u32> {
+pub(crate) fn permuted<T: Send>(
+    count: u64,
+    key: u64,
+    look: impl Fn(&[u32]) -> T + Sync,
+) -> Vec<(Vec<u32>, T)> {
     /// Numbers that are permuted side by side with others.
     const BLOCK: u64 = 1024;
     assert!(count <= 1 << 32, "permuted: the count is 2^32 at most");
-    let blocks = reduce::each(count.div_ceil(BLOCK), |block| {
+    reduce::each(count.div_ceil(BLOCK), |block| {
         let numbers = BLOCK * block..count.min(BLOCK * (block + 1));
         let mut images = Vec::with_capacity(BLOCK as usize);
         vectorised(
@@ -75,9 +80,9 @@ pub(crate) fn permuted(count: u64, key: u64) -> Vec<u32> {
                 }
             },
         );
-        images
-    });
-    blocks.concat()
+        let found = look(&images);
+        (images, found)
+    })
 }
 
 /// Takes the numbers past the count on along their cycles, until all are below it.
@@ -165,7 +170,12 @@ mod tests {
     fn all_are_permuted_as_each_is() {
         for count in (0..=17).chain([64, 100, 128, 3125]) {
             for key in 0..5 {
-                let images = permuted(count, key);
+                let blocks = permuted(count, key, <[u32]>::len);
+                let lengths = blocks
+                    .iter()
+                    .map(|(images, length)| (images.len(), *length));
+                assert!(lengths.into_iter().all(|(here, length)| here == length));
+                let images: Vec<u32> = blocks.into_iter().flat_map(|(images, _)| images).collect();
                 let each = (0..count).map(|number| permute(number, count, key));
                 assert!(images.into_iter().map(u64::from).eq(each), "{count}");
             }

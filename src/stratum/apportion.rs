@@ -70,13 +70,11 @@ pub(crate) fn apportion<S: Sync>(
     all
 }
 
-/// How many points each stratum has, if these are their numbers up to and with each.
-pub(crate) fn counts(ends: &[u64]) -> Vec<u64> {
-    let before = iter::once(&0).chain(ends);
-    ends.iter()
-        .zip(before)
-        .map(|(end, before)| end - before)
-        .collect()
+/// How many points a stratum has, if `ends` are their numbers up to and with each.
+#[inline]
+pub(crate) fn between(ends: &[u64], stratum: usize) -> u64 {
+    let before = stratum.checked_sub(1).map_or(0, |before| ends[before]);
+    ends[stratum] - before
 }
 
 /// Shares `count` points out among so many strata, all of them alike.
@@ -110,8 +108,11 @@ mod tests {
 
     #[test]
     fn points_are_shared_out_to_the_last() {
-        let apportion =
-            |scores: &[f64], even, count| counts(&apportion(scores, |score| *score, even, count));
+        let apportion = |scores: &[f64], even, count| {
+            let ends = apportion(scores, |score| *score, even, count);
+            let counts = (0..ends.len()).map(|stratum| between(&ends, stratum));
+            counts.collect::<Vec<u64>>()
+        };
         let by = |scores: &[f64], count| apportion(scores, 0.0, count);
         assert_eq!(by(&[1.0, 1.0, 1.0], 10), [3, 4, 3]);
         assert_eq!(by(&[0.0, 0.0], 5), [3, 2]);

@@ -30,19 +30,31 @@ enum Order {
 const SHORTEST: u64 = 256;
 
 impl<'a> Walk<'a> {
-    /// `counts[k]` points in stratum `k`; no part is longer than `longest`, rounded up to a power of two.
+    /// `count(k)` points in each of so many `strata`; no part is longer than `longest`, rounded up to a power of two.
     ///
     /// The order of the strata is random, one that `key` selects. So those that were visited first are a random sample of all,
     /// and a walk that has to stop early has an estimate to give.
-    pub(crate) fn shuffled(counts: &[u64], key: u64, longest: u64) -> Self {
-        let order = permuted(counts.len() as u64, key);
-        let counts_in_order = order.iter().map(|&stratum| counts[stratum as usize]);
-        let ends: Vec<u64> = counts_in_order
-            .scan(0, |sum, count| {
+    pub(crate) fn shuffled(
+        strata: usize,
+        count: impl Fn(usize) -> u64 + Sync,
+        key: u64,
+        longest: u64,
+    ) -> Self {
+        let blocks = permuted(strata as u64, key, |order| {
+            let counts = order.iter().map(|&stratum| count(stratum as usize));
+            let mut sums = Vec::with_capacity(order.len());
+            sums.extend(counts.scan(0, |sum, count| {
                 *sum += count;
                 Some(*sum)
-            })
-            .collect();
+            }));
+            sums
+        });
+        let (mut order, mut ends) = (Vec::with_capacity(strata), Vec::with_capacity(strata));
+        for (strata, sums) in blocks {
+            let before = ends.last().copied().unwrap_or(0);
+            order.extend(strata);
+            ends.extend(sums.into_iter().map(|sum| before + sum));
+        }
         Self::new(ends.into(), Order::Shuffled(order), longest)
     }
 
@@ -70,7 +82,7 @@ impl<'a> Walk<'a> {
     }
 
     /// How many points there are.
-    fn points(&self) -> u64 {
+    pub(crate) fn points(&self) -> u64 {
         self.ends.last().copied().unwrap_or(0)
     }
 
@@ -425,7 +437,7 @@ mod tests {
         let counts = [70_000, 2, 3];
         for longest in [256, 1024, 16_384] {
             let walks = [
-                Walk::shuffled(&counts, 7, longest),
+                Walk::shuffled(3, |stratum| counts[stratum], 7, longest),
                 Walk::in_turn(&[70_000, 70_002, 70_005], longest),
             ];
             let [growing, shrinking] = walks.each_ref().map(|walk| {
@@ -444,14 +456,14 @@ mod tests {
             assert!(growing.iter().eq(shrinking.iter().rev()));
             assert_eq!(growing[0], 256);
         }
-        assert_eq!(Walk::shuffled(&[], 0, 1).parts(u64::MAX), 0);
+        assert_eq!(Walk::shuffled(0, |_| 0, 0, 1).parts(u64::MAX), 0);
         assert_eq!(Walk::in_turn(&[3], 1).parts(1), 1);
     }
 
     #[test]
     fn every_stratum_is_visited_once_with_its_points() {
         let counts: Vec<u64> = (2..40).collect();
-        let walk = Walk::shuffled(&counts, 3, 256);
+        let walk = Walk::shuffled(38, |stratum| counts[stratum], 3, 256);
         let mut seen: Vec<_> = (0..counts.len()).map(|visit| walk.stratum(visit)).collect();
         for (visit, &stratum) in seen.iter().enumerate() {
             let before = visit.checked_sub(1).map_or(0, |visit| walk.ends[visit]);

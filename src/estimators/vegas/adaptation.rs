@@ -7,7 +7,7 @@ use crate::evaluate::Wide;
 use crate::integrands::ImportanceMap;
 use crate::points::{Independent, PointSet};
 use crate::recorder::Recorder;
-use crate::stratum::{Rows, Stratum, Visited, Walk, apportion, counts};
+use crate::stratum::{Rows, Stratum, Visited, Walk, apportion, between};
 use crate::{Error, Integrand, NonFinite, Value, hash, reduce};
 
 /// What is adapted from iteration to iteration.
@@ -133,7 +133,10 @@ impl<V: Value> Adaptation<V> {
         const ROWS: usize = 256;
         let longest = longest_part(self.points());
         let walk = match order {
-            Order::Random => Walk::shuffled(&counts(&self.ends), seed, longest),
+            Order::Random => {
+                let count = |stratum| between(&self.ends, stratum);
+                Walk::shuffled(self.ends.len(), count, seed, longest)
+            }
             Order::Number => Walk::in_turn(&self.ends, longest),
         };
         let bins = self.map.table();

@@ -26,8 +26,11 @@ use copies::Copies;
 pub(in crate::path) use kind::{Kind, axis};
 #[cfg(feature = "simd")]
 pub(in crate::path) use probe::WIDER;
-use soup::Soup;
+pub(in crate::path) use soup::Soup;
+#[cfg(feature = "simd")]
+pub(in crate::path) use soup::together::{Rays, Triangles};
 use sweep::Sweep;
+pub(in crate::path) use tree::InLeaf;
 use tree::Tree;
 
 /// The shapes of a scene, and a way to find them.
@@ -128,16 +131,27 @@ impl Geometry {
     fn nearest_within(&self, ray: &Ray, limit: f32) -> Option<(Hit, f32)> {
         let nearest = self.nearest_shape(ray, limit);
         let limit = nearest.map_or(limit, |(_, distance)| distance);
-        self.nearest_beside(ray, limit).or(nearest)
+        let triangle = self.nearest_triangle(ray, limit);
+        self.nearest_beside(ray, limit, triangle).or(nearest)
     }
 
-    /// The first triangle of a mesh or shape of a copy that the ray meets before `limit`, and its distance.
+    /// The first triangle of a mesh that the ray meets before `limit`.
     #[inline]
-    pub(in crate::path) fn nearest_beside(&self, ray: &Ray, mut limit: f32) -> Option<(Hit, f32)> {
+    pub(in crate::path) fn nearest_triangle(&self, ray: &Ray, limit: f32) -> Option<InLeaf> {
+        self.soup.as_ref()?.nearest(ray, limit)
+    }
+
+    /// That triangle, or a shape of a copy if the ray meets one before, and the distance.
+    #[inline]
+    pub(in crate::path) fn nearest_beside(
+        &self,
+        ray: &Ray,
+        mut limit: f32,
+        triangle: Option<InLeaf>,
+    ) -> Option<(Hit, f32)> {
         let mut nearest = None;
-        if let Some(soup) = &self.soup
-            && let Some(struck) = soup.nearest(ray, limit)
-        {
+        if let (Some(soup), Some(met)) = (&self.soup, triangle) {
+            let struck = soup.struck(ray, met);
             limit = struck.distance;
             let hit = Hit {
                 part: self.shapes.len() + struck.mesh,
@@ -247,5 +261,17 @@ impl Geometry {
         let soup = |soup: &Soup| soup.occluded(ray, limit);
         let copies = |copies: &Copies| copies.occluded(ray, limit);
         self.soup.as_ref().is_some_and(soup) || self.copies.as_ref().is_some_and(copies)
+    }
+
+    /// The triangles of all meshes.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn soup(&self) -> Option<&Soup> {
+        self.soup.as_ref()
+    }
+
+    /// Whether there are any copies.
+    #[cfg(feature = "simd")]
+    pub(in crate::path) fn has_copies(&self) -> bool {
+        self.copies.is_some()
     }
 }

@@ -36,7 +36,18 @@ impl Row<f32> {
     /// Sets the vector of a lane of three rows.
     #[inline(always)]
     pub(in crate::path) fn set_vector(rows: &mut [Self; 3], lane: usize, vector: Vec3A) {
-        for (row, number) in rows.iter_mut().zip(vector.to_array()) {
+        Self::set_numbers(rows, lane, vector.to_array());
+    }
+
+    /// The same as [`vector`](Self::vector), number by number.
+    #[inline(always)]
+    pub(in crate::path) fn numbers([x, y, z]: &[Self; 3], lane: usize) -> [f32; 3] {
+        [x.0[lane], y.0[lane], z.0[lane]]
+    }
+
+    #[inline(always)]
+    pub(in crate::path) fn set_numbers(rows: &mut [Self; 3], lane: usize, numbers: [f32; 3]) {
+        for (row, number) in rows.iter_mut().zip(numbers) {
             row.0[lane] = number;
         }
     }
@@ -87,6 +98,21 @@ impl<S: Simd> Index<S> {
             simd,
             lanes: simd.greater_than_or_equal_u32s(self.lanes, simd.splat_u32s(other)),
         }
+    }
+
+    #[inline(always)]
+    pub(in crate::path) fn load(_: S, row: &Row<u32>) -> Self {
+        Self {
+            lanes: S::as_simd_u32s(&row.0).0[0],
+        }
+    }
+
+    /// The numbers, to be read lane by lane.
+    #[inline(always)]
+    pub(in crate::path) fn row(self) -> Row<u32> {
+        let mut row = Row::<u32>::ZERO;
+        self.store(&mut row);
+        row
     }
 
     #[inline(always)]
@@ -250,6 +276,25 @@ impl<S: Simd> Mask<S> {
     pub(in crate::path) fn row(self, simd: S) -> Row<f32> {
         let (yes, no) = (Real::splat(simd, 1.0), Real::splat(simd, 0.0));
         self.select(yes, no).row()
+    }
+
+    #[inline(always)]
+    pub(in crate::path) fn simd(self) -> S {
+        self.simd
+    }
+
+    /// The first lane where it holds, or how many lanes there are.
+    #[inline(always)]
+    pub(in crate::path) fn first(self) -> usize {
+        self.simd.first_true_m32s(self.lanes)
+    }
+
+    /// Whether it holds in one lane, no more.
+    #[inline(always)]
+    pub(in crate::path) fn is_one(self) -> bool {
+        let simd = self.simd;
+        let ones = simd.select_f32s(self.lanes, simd.splat_f32s(1.0), simd.splat_f32s(0.0));
+        simd.reduce_sum_f32s(ones) == 1.0
     }
 
     /// Whether it holds in any lane.

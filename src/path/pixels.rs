@@ -60,8 +60,8 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     /// The mean of each of some pixels of a picture of `size`: unless paths are reused, what [`Average`] gives for the [`pixel`](Self::pixel) alone, to the bit,
     /// but for the [time](crate::Estimate::seconds), which may be 0: that of pixels together is not told apart.
     ///
-    /// Where many paths are followed at once, those of the next pixel begin where those of one run out, which is several times as
-    /// fast for a few points a pixel, and somewhat faster for some hundreds. A few thousand points in all are enough for that.
+    /// Where many paths are followed at once, those of several pixels go together, which is several times as fast for a few points a
+    /// pixel, and somewhat faster for some hundreds. A few thousand points in all are enough for that.
     ///
     /// If paths are [reused](super::Paths::reused_by), they are by pixels that follow one another here: ask for all of a run of
     /// [columns](super::Paths::columns_together) at once, or the means are others.

@@ -81,6 +81,13 @@ impl Node {
         ]
     }
 
+    /// Whether there is no box in a lane, nor in later ones.
+    #[cfg(feature = "simd")]
+    #[inline(always)]
+    pub(super) fn is_empty(&self, lane: usize) -> bool {
+        self.bounds[0][lane] > self.bounds[3][lane]
+    }
+
     #[inline(always)]
     pub(super) fn child(&self, lane: usize) -> Child {
         self.children[lane]

@@ -1,11 +1,15 @@
 //! The triangles of all meshes.
 
+#[cfg(feature = "simd")]
+pub(in crate::path) mod together;
+
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3A};
 
 use super::Hit;
 use super::collapse::Cost;
 use super::flats::{Flats, LANES};
+use super::node::Child;
 use super::pages::Pages;
 use super::probe::Probe;
 use super::tree::{InLeaf, Leaves, Tree};
@@ -15,7 +19,7 @@ use crate::path::shape::{Flat, Mesh, Shape};
 
 /// The triangles of some meshes, one mesh after the other, and a tree around them.
 #[derive(Debug)]
-pub(super) struct Soup {
+pub(in crate::path) struct Soup {
     meshes: Vec<Mesh>,
     /// The number of triangles before each mesh.
     starts: Vec<usize>,
@@ -98,34 +102,42 @@ impl Soup {
         self.tree.boxes()
     }
 
+    /// The triangle that a ray meets first, if it is nearer than `limit`.
     #[inline]
-    pub(super) fn nearest(&self, ray: &Ray, limit: f32) -> Option<Struck> {
-        let blocks = self.blocks.as_slice();
-        let mut leaves = Blocks(blocks);
+    pub(super) fn nearest(&self, ray: &Ray, limit: f32) -> Option<InLeaf> {
+        let mut leaves = Blocks::new(self.blocks.as_slice());
+        self.tree
+            .nearest_in_leaves(Child::ROOT, ray, limit, &mut leaves)
+    }
+
+    /// More of what a ray meets.
+    #[inline]
+    pub(super) fn struck(&self, ray: &Ray, met: InLeaf) -> Struck {
         let InLeaf {
             leaf,
             lane,
             distance,
-        } = self.tree.nearest_in_leaves(ray, limit, &mut leaves)?;
-        let block = &blocks[leaf];
+        } = met;
+        let block = &self.blocks.as_slice()[leaf];
         let triangle = block.numbers[lane] as usize;
         let mesh = self.mesh(triangle);
         let edges = self.meshes[mesh].edges(triangle - self.starts[mesh]);
         let turned = self.meshes[mesh].is_turned();
         let (surface, along) = block.flats.surface(lane, &edges, turned, ray, distance);
-        Some(Struck {
+        Struck {
             triangle,
             mesh,
             distance,
             surface,
             along,
-        })
+        }
     }
 
     #[inline]
     pub(super) fn occluded(&self, ray: &Ray, limit: f32) -> bool {
-        let mut leaves = Blocks(self.blocks.as_slice());
-        self.tree.any_in_leaves(ray, limit, &mut leaves)
+        let mut leaves = Blocks::new(self.blocks.as_slice());
+        self.tree
+            .any_in_leaves(Child::ROOT, ray, limit, &mut leaves)
     }
 
     /// Which of the meshes a triangle belongs to.
@@ -150,17 +162,37 @@ impl Soup {
 }
 
 /// The triangles of each leaf.
-struct Blocks<'a>(&'a [Block]);
+struct Blocks<'a> {
+    blocks: &'a [Block],
+    /// The leaf of the nearest triangle so far.
+    nearest: usize,
+}
+
+impl<'a> Blocks<'a> {
+    #[inline(always)]
+    fn new(blocks: &'a [Block]) -> Self {
+        Self { blocks, nearest: 0 }
+    }
+}
 
 impl Leaves for Blocks<'_> {
+    /// Of several triangles at the same distance that of the leaf of the least number is the nearest, and of those the first, in whatever order leaves
+    /// are visited.
     #[inline(always)]
     fn nearest(&mut self, probe: &impl Probe, leaf: usize, limit: f32) -> Option<(usize, f32)> {
-        probe.meet(&self.0[leaf].flats, limit).nearest()
+        let limit = if leaf < self.nearest {
+            limit.next_up()
+        } else {
+            limit
+        };
+        let met = probe.meet(&self.blocks[leaf].flats, limit).nearest()?;
+        self.nearest = leaf;
+        Some(met)
     }
 
     #[inline(always)]
     fn any(&mut self, probe: &impl Probe, leaf: usize, limit: f32) -> bool {
-        probe.meet(&self.0[leaf].flats, limit).which != 0
+        probe.meet(&self.blocks[leaf].flats, limit).which != 0
     }
 }
 
@@ -187,9 +219,10 @@ mod tests {
                 origin: Vec3A::from(vector(1000 + seed)),
                 direction: Vec3A::from(vector(3000 + seed)).normalize(),
             };
-            let Some(struck) = soup.nearest(&ray, f32::INFINITY) else {
+            let Some(first) = soup.nearest(&ray, f32::INFINITY) else {
                 continue;
             };
+            let struck = soup.struck(&ray, first);
             let flat = meshes[struck.mesh].flat(struck.triangle - soup.starts[struck.mesh]);
             assert_eq!(flat.intersect(&ray, f32::INFINITY), Some(struck.distance));
             let surface = flat.surface(&ray, struck.distance);

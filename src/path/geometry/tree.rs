@@ -40,7 +40,7 @@ pub(super) trait Leaves {
 
 /// What a ray meets: its place in a leaf, and its distance.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct InLeaf {
+pub(in crate::path) struct InLeaf {
     pub(super) leaf: usize,
     pub(super) lane: usize,
     pub(super) distance: f32,
@@ -113,6 +113,11 @@ impl Tree {
         }
     }
 
+    #[cfg(feature = "simd")]
+    pub(super) fn nodes(&self) -> &[Node] {
+        self.nodes.as_slice()
+    }
+
     /// The boxes that a walk begins with.
     #[cfg(feature = "simd")]
     pub(super) fn boxes(&self) -> impl Iterator<Item = [Vec3A; 2]> {
@@ -156,7 +161,7 @@ impl Tree {
             leaves: &self.leaves,
             meet,
         };
-        let place = self.nearest_in_leaves(ray, limit, &mut each)?;
+        let place = self.nearest_in_leaves(Child::ROOT, ray, limit, &mut each)?;
         Some(Found {
             shape: self.leaves[place.leaf][place.lane] as usize,
             distance: place.distance,
@@ -175,13 +180,14 @@ impl Tree {
             leaves: &self.leaves,
             meet: |shape, limit| meet(shape, limit).then_some(0.0),
         };
-        self.any_in_leaves(ray, limit, &mut each)
+        self.any_in_leaves(Child::ROOT, ray, limit, &mut each)
     }
 
-    /// The same leaf by leaf.
+    /// The same leaf by leaf, of those that are in `from` or below it.
     #[inline]
     pub(super) fn nearest_in_leaves(
         &self,
+        from: Child,
         ray: &Ray,
         limit: f32,
         leaves: &mut impl Leaves,
@@ -194,17 +200,24 @@ impl Tree {
             return simd.vectorize(ToNearest(InVectors {
                 simd,
                 tree: self,
+                from,
                 ray,
                 limit,
                 leaves,
             }));
         }
-        self.walk_to_nearest(&Plain::new(ray), limit, leaves)
+        self.walk_to_nearest(from, &Plain::new(ray), limit, leaves)
     }
 
     /// Whether any leaf holds something that is met.
     #[inline]
-    pub(super) fn any_in_leaves(&self, ray: &Ray, limit: f32, leaves: &mut impl Leaves) -> bool {
+    pub(super) fn any_in_leaves(
+        &self,
+        from: Child,
+        ray: &Ray,
+        limit: f32,
+        leaves: &mut impl Leaves,
+    ) -> bool {
         if is_none(ray) {
             return false;
         }
@@ -213,17 +226,19 @@ impl Tree {
             return simd.vectorize(ToAny(InVectors {
                 simd,
                 tree: self,
+                from,
                 ray,
                 limit,
                 leaves,
             }));
         }
-        self.walk_to_any(&Plain::new(ray), limit, leaves)
+        self.walk_to_any(from, &Plain::new(ray), limit, leaves)
     }
 
     #[inline(always)]
     fn walk_to_nearest(
         &self,
+        from: Child,
         probe: &impl Probe,
         mut limit: f32,
         leaves: &mut impl Leaves,
@@ -231,7 +246,7 @@ impl Tree {
         let nodes = self.nodes.as_slice();
         let mut nearest = None;
         let mut stack = Stack::new();
-        let mut next = Some(Child::ROOT);
+        let mut next = Some(from);
         while let Some(child) = next {
             let index = child.index();
             next = if child.is_leaf() {
@@ -257,10 +272,16 @@ impl Tree {
     }
 
     #[inline(always)]
-    fn walk_to_any(&self, probe: &impl Probe, limit: f32, leaves: &mut impl Leaves) -> bool {
+    fn walk_to_any(
+        &self,
+        from: Child,
+        probe: &impl Probe,
+        limit: f32,
+        leaves: &mut impl Leaves,
+    ) -> bool {
         let nodes = self.nodes.as_slice();
         let mut stack = Stack::new();
-        let mut next = Some(Child::ROOT);
+        let mut next = Some(from);
         while let Some(child) = next {
             let index = child.index();
             if !child.is_leaf() {
@@ -281,6 +302,7 @@ impl Tree {
 struct InVectors<'a, L> {
     simd: pulp::x86::V3,
     tree: &'a Tree,
+    from: Child,
     ray: &'a Ray,
     limit: f32,
     leaves: &'a mut L,
@@ -297,7 +319,8 @@ impl<L: Leaves> pulp::NullaryFnOnce for ToNearest<'_, L> {
     fn call(self) -> Option<InLeaf> {
         let Self(walk) = self;
         let probe = Vectors::new(walk.simd, walk.ray);
-        walk.tree.walk_to_nearest(&probe, walk.limit, walk.leaves)
+        walk.tree
+            .walk_to_nearest(walk.from, &probe, walk.limit, walk.leaves)
     }
 }
 
@@ -312,7 +335,8 @@ impl<L: Leaves> pulp::NullaryFnOnce for ToAny<'_, L> {
     fn call(self) -> bool {
         let Self(walk) = self;
         let probe = Vectors::new(walk.simd, walk.ray);
-        walk.tree.walk_to_any(&probe, walk.limit, walk.leaves)
+        walk.tree
+            .walk_to_any(walk.from, &probe, walk.limit, walk.leaves)
     }
 }
 

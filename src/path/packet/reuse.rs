@@ -211,7 +211,7 @@ impl Sharing<'_> {
                         let between = &self.packet.dividing;
                         let ways = (start, into, limit);
                         self.packet
-                            .sees::<S, false>(between, || self.geometry, active, ways)
+                            .sees::<S, false>(between, || self.geometry, false, active, ways)
                     } else {
                         active
                     };

@@ -7,7 +7,7 @@ use super::Packet;
 use super::optics::Optics;
 use super::sweep::Shapes;
 use crate::path::Ray;
-use crate::path::geometry::{Geometry, Hit};
+use crate::path::geometry::{self, Geometry, Hit, Triangles};
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
 use crate::path::shape::{Primitive, Shape};
 
@@ -187,19 +187,30 @@ impl Rays<'_> {
 
 impl Solids {
     /// The solids that rays meet, of which those to the shapes `shapes` are met at the limit; round ones among them. Meshes and copies are
-    /// only looked for in the lanes that have 1 in `near`.
+    /// only looked for in the lanes that have 1 in `near`, unless it is known which `triangles` they meet.
     #[inline(never)]
     pub(super) fn nearest(
         &self,
         geometry: &Geometry,
         rays: &Rays<'_>,
         near: &Row<f32>,
+        triangles: Option<Triangles>,
         shapes: &Row<u32>,
     ) -> Points {
+        // Of all lanes before anything is read of what is met: machines wait for many such reads at a time, but not beyond a search.
+        let triangles = triangles.unwrap_or_else(|| {
+            let mut triangles = [None; WIDEST];
+            for (lane, ray, limit) in rays.each() {
+                if near.0[lane] > 0.0 {
+                    triangles[lane] = geometry.nearest_triangle(&ray, limit);
+                }
+            }
+            triangles
+        });
         let mut points = Points::NONE;
         for (lane, ray, limit) in rays.each() {
             if near.0[lane] > 0.0
-                && let Some((hit, _)) = geometry.nearest_beside(&ray, limit)
+                && let Some((hit, _)) = geometry.nearest_beside(&ray, limit, triangles[lane])
             {
                 let shading = if self.smooth {
                     geometry.normal(&hit)
@@ -227,12 +238,13 @@ impl Solids {
 
 impl Packet {
     /// Where nothing is in the way, in the active lanes: neither shapes `between` the ends nor, unless the scene is `PLAIN`, anything
-    /// else. The ways are where rays start, where they go and how far.
+    /// else. The ways are where rays start, where they go and how far; `alike`, whether they run side by side.
     #[inline(always)]
     pub(super) fn sees<'g, S: Simd, const PLAIN: bool>(
         &self,
         between: &Shapes,
         geometry: impl FnOnce() -> &'g Geometry,
+        alike: bool,
         active: Mask<S>,
         (start, into, limit): (Vector<S>, Vector<S>, Real<S>),
     ) -> Mask<S> {
@@ -245,13 +257,25 @@ impl Packet {
         if !near.any() {
             return visible;
         }
+        let geometry = geometry();
+        if let Some(soup) = geometry.soup().filter(|soup| alike && soup.is_small())
+            && !geometry.has_copies()
+        {
+            let rays = geometry::Rays {
+                origin: start,
+                direction: into,
+                limit,
+                active: near,
+            };
+            return visible & !soup.occluded_together(rays);
+        }
         let rays = Rays {
             origin: &start.rows(),
             direction: &into.rows(),
             limit: &limit.row(),
             active: &near.row(simd),
         };
-        let blocked = blocked(geometry(), &rays);
+        let blocked = blocked(geometry, &rays);
         visible & Real::load(simd, &blocked).eq(Real::splat(simd, 0.0))
     }
 }

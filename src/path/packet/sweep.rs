@@ -86,9 +86,7 @@ impl<S: Simd> Hit<S> {
     /// The numbers of the shapes, to be read lane by lane.
     #[inline(always)]
     pub(super) fn shapes(&self) -> Row<u32> {
-        let mut shapes = Row::<u32>::ZERO;
-        self.shape.store(&mut shapes);
-        shapes
+        self.shape.row()
     }
 
     #[inline(always)]

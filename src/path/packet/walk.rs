@@ -17,6 +17,7 @@ use super::sweep::Shapes;
 use super::{Packet, Single, Start};
 use crate::Sampler;
 use crate::path::Paths;
+use crate::path::geometry;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
 use crate::path::light::{Sky, Surroundings};
 use crate::path::segment::End;
@@ -37,7 +38,11 @@ pub(super) struct Walk<'a, U, const PLAIN: bool> {
     pub(super) keeper: Option<Keeper<'a>>,
 }
 
+/// So many states are taken on in turn: more paths than this are more than the nearest cache holds.
+const GROUPS: usize = 16;
+
 /// What the loop over single paths keeps in its variables, of each lane's path.
+#[derive(Clone, Copy)]
 struct State {
     origin: [Row<f32>; 3],
     direction: [Row<f32>; 3],
@@ -48,8 +53,40 @@ struct State {
     /// Zero in a lane without a path.
     segment: Row<f32>,
     weight: Row<f32>,
-    /// Which point the path belongs to, if any.
+    /// Which point the path belongs to.
     point: [usize; WIDEST],
+}
+
+/// The same of one path.
+struct Path {
+    origin: [f32; 3],
+    direction: [f32; 3],
+    throughput: [f32; 3],
+    radiance: [f32; 3],
+    density: f32,
+    eta: f32,
+    segment: f32,
+    weight: f32,
+    point: usize,
+}
+
+impl Path {
+    #[inline(always)]
+    fn begin(point: usize, start: &Start) -> Self {
+        let Start { ray, weight } = *start;
+        Self {
+            origin: ray.origin.to_array(),
+            direction: ray.direction.to_array(),
+            throughput: [1.0; 3],
+            radiance: [0.0; 3],
+            // The density of the camera's direction, which is no choice.
+            density: f32::INFINITY,
+            eta: 1.0,
+            segment: 1.0,
+            weight,
+            point,
+        }
+    }
 }
 
 impl State {
@@ -65,68 +102,62 @@ impl State {
         point: [usize::MAX; WIDEST],
     };
 
+    /// The path of a lane.
     #[inline(always)]
-    fn begin(&mut self, lane: usize, point: usize, start: &Start) {
-        let Start { ray, weight } = *start;
-        Row::set_vector(&mut self.origin, lane, ray.origin);
-        Row::set_vector(&mut self.direction, lane, ray.direction);
-        Row::set_vector(&mut self.throughput, lane, Vec3A::ONE);
-        Row::set_vector(&mut self.radiance, lane, Vec3A::ZERO);
-        // The density of the camera's direction, which is no choice.
-        self.density.0[lane] = f32::INFINITY;
-        self.eta.0[lane] = 1.0;
-        self.segment.0[lane] = 1.0;
-        self.weight.0[lane] = weight;
-        self.point[lane] = point;
+    fn path(&self, lane: usize) -> Path {
+        Path {
+            origin: Row::numbers(&self.origin, lane),
+            direction: Row::numbers(&self.direction, lane),
+            throughput: Row::numbers(&self.throughput, lane),
+            radiance: Row::numbers(&self.radiance, lane),
+            density: self.density.0[lane],
+            eta: self.eta.0[lane],
+            segment: self.segment.0[lane],
+            weight: self.weight.0[lane],
+            point: self.point[lane],
+        }
     }
 
     #[inline(always)]
-    fn radiance(&self, lane: usize) -> Vec3A {
-        Row::vector(&self.radiance, lane)
-    }
-
-    #[inline(always)]
-    fn value(&self, lane: usize) -> Vec3 {
-        Vec3::from(self.radiance(lane)) * self.weight.0[lane]
+    fn set(&mut self, lane: usize, path: Path) {
+        Row::set_numbers(&mut self.origin, lane, path.origin);
+        Row::set_numbers(&mut self.direction, lane, path.direction);
+        Row::set_numbers(&mut self.throughput, lane, path.throughput);
+        Row::set_numbers(&mut self.radiance, lane, path.radiance);
+        self.density.0[lane] = path.density;
+        self.eta.0[lane] = path.eta;
+        self.segment.0[lane] = path.segment;
+        self.weight.0[lane] = path.weight;
+        self.point[lane] = path.point;
     }
 }
 
 impl<U: Sampler, const PLAIN: bool> WithSimd for Walk<'_, U, PLAIN> {
     type Output = ();
 
-    /// Follows a path in each lane; where one ends the next one begins.
+    /// Follows some paths at a time, all of them segment by segment, so that those that begin go together.
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
-        let mut state = State::IDLE;
+        let lanes = S::F32_LANES;
+        let mut states = [State::IDLE; GROUPS];
         let mut begun = 0;
-        let mut running = 0;
-        loop {
-            for lane in 0..S::F32_LANES {
-                if state.segment.0[lane] > 0.0 {
-                    continue;
-                }
-                if let Some(value) = self.values.get_mut(state.point[lane]) {
-                    match &mut self.keeper {
-                        Some(keeper) => keeper.end(
-                            state.point[lane],
-                            state.radiance(lane),
-                            state.weight.0[lane],
-                        ),
-                        None => *value = state.value(lane),
-                    }
-                    state.point[lane] = usize::MAX;
-                    running -= 1;
-                }
-                if let Some(start) = self.starts.get(begun) {
-                    state.begin(lane, begun, start);
-                    begun += 1;
-                    running += 1;
-                }
+        while begun < self.starts.len() {
+            let mut running = (self.starts.len() - begun).min(GROUPS * lanes);
+            for (place, start) in self.starts[begun..][..running].iter().enumerate() {
+                let path = Path::begin(begun + place, start);
+                states[place / lanes].set(place % lanes, path);
             }
-            if running == 0 {
-                break;
+            begun += running;
+            while running > 0 {
+                // What was in the lanes behind the last path.
+                for place in running..running.next_multiple_of(lanes) {
+                    states[place / lanes].segment.0[place % lanes] = 0.0;
+                }
+                for state in &mut states[..running.div_ceil(lanes)] {
+                    self.step(simd, state);
+                }
+                running = self.close_ranks(&mut states, running, lanes);
             }
-            self.step(simd, &mut state);
         }
     }
 }
@@ -142,9 +173,35 @@ pub(super) struct Laws<'a, S: Simd> {
     /// Where the law is another, which is asked by the points.
     other: Mask<S>,
     hits: Option<&'a Hits<'a>>,
+    /// Whether the paths are much alike so far.
+    alike: bool,
 }
 
 impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
+    /// Ends the paths that go no further, of the first `running`, and moves the others up. How many these are.
+    #[inline(always)]
+    fn close_ranks(&mut self, states: &mut [State], running: usize, lanes: usize) -> usize {
+        let mut left = 0;
+        for place in 0..running {
+            let (state, lane) = (&states[place / lanes], place % lanes);
+            if state.segment.0[lane] > 0.0 {
+                if left < place {
+                    let path = state.path(lane);
+                    states[left / lanes].set(left % lanes, path);
+                }
+                left += 1;
+                continue;
+            }
+            let (point, radiance) = (state.point[lane], Row::vector(&state.radiance, lane));
+            let weight = state.weight.0[lane];
+            match &mut self.keeper {
+                Some(keeper) => keeper.end(point, radiance, weight),
+                None => self.values[point] = Vec3::from(radiance) * weight,
+            }
+        }
+        left
+    }
+
     /// Takes every path one segment on, as an iteration of [`Paths::radiance`] does.
     #[inline(always)]
     fn step<S: Simd>(&mut self, simd: S, state: &mut State) {
@@ -164,6 +221,8 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         let segment = Real::load(simd, &state.segment);
 
         let walking = segment.gt(zero);
+        // Rays of paths that begin, of one pixel or its neighbours, run side by side.
+        let alike = !segment.gt(one).any();
         let hit = packet.shapes.nearest(simd, origin, direction);
         let mut met = walking & hit.distance.lt(Real::splat(simd, f32::INFINITY));
         let solids = packet.solids.as_ref().filter(|_| !PLAIN);
@@ -180,7 +239,17 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
                 active: &(near | round).row(simd),
             };
             let geometry = self.single.geometry();
-            Some(solids.nearest(geometry, &rays, &near.row(simd), &hit.shapes()))
+            let soup = geometry.soup().filter(|soup| alike && soup.is_small());
+            let triangles = soup.filter(|_| near.any()).map(|soup| {
+                soup.nearest_together(geometry::Rays {
+                    origin,
+                    direction,
+                    limit: hit.distance,
+                    active: near,
+                })
+            });
+            let near = near.row(simd);
+            Some(solids.nearest(geometry, &rays, &near, triangles, &hit.shapes()))
         });
         if let Some(solids) = &solids {
             met = met | solids.met(simd);
@@ -277,6 +346,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             albedo,
             other: kind.ge(Real::splat(simd, OTHER)),
             hits: hits.as_ref(),
+            alike,
         };
 
         if let Some(keeper) = &mut self.keeper {
@@ -411,7 +481,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
             || self.single.geometry(),
             (lamp.start, lamp.into, lamp.limit),
         );
-        let mut visible = (self.packet).sees::<S, PLAIN>(between, geometry, active, ways);
+        let mut visible = (self.packet).sees::<S, PLAIN>(between, geometry, at.alike, active, ways);
         // Other laws take their time, and are asked for light that arrives alone.
         if let Some(hits) = at.hits {
             let asked = visible & at.other;

@@ -462,12 +462,12 @@ mod tests {
             let found = self.soup.nearest_together(rays);
             let occluded = self.soup.occluded_together(rays).row(simd);
             let mut met = 0;
-            for lane in 0..S::F32_LANES {
+            for (lane, found) in found.iter().enumerate().take(S::F32_LANES) {
                 let (ray, limit) = (&self.rays[lane], self.limits[lane]);
                 let bits = |met: InLeaf| (met.leaf, met.lane, met.distance.to_bits());
                 let alone = self.soup.nearest(ray, limit).map(bits);
                 let alone = alone.filter(|_| self.active.0[lane] > 0.0);
-                assert_eq!(found[lane].map(bits), alone, "{ray:?} {limit}");
+                assert_eq!(found.map(bits), alone, "{ray:?} {limit}");
                 assert_eq!(occluded.0[lane] > 0.0, alone.is_some(), "{ray:?} {limit}");
                 met += usize::from(alone.is_some());
             }
@@ -504,11 +504,11 @@ mod tests {
         let (mut met, mut lanes) = (0, 0);
         for (count, size) in [(2, 0.5), (100, 0.3), (4000, 0.05), (1000, 3.0)] {
             let soup = soup(count, size);
-            for seed in 0..400 {
+            for seed in 0..400_u32 {
+                let (spread, seed) = ([1e-3, 0.1, 1.0][(seed % 3) as usize], u64::from(seed));
                 let random = |k| Vec3A::from(vector(1000 + seed, k, 1.0));
                 let origin = Vec3A::from(vector(100 + seed, 0, 2.0));
                 // Side by side, or anywhere; some along an axis, to the diagonal of the square, and none at all.
-                let spread = [1e-3, 0.1, 1.0][seed as usize % 3];
                 let rays = core::array::from_fn(|lane| {
                     let k = 2 * lane as u64;
                     let direction = random(k) * spread - origin;
@@ -532,7 +532,7 @@ mod tests {
                     rays: &rays,
                     limits: core::array::from_fn(|lane| limit(lane as u64)),
                     active: Row(core::array::from_fn(|lane| {
-                        f32::from(u8::from(hash(seed, 200 + lane as u64) % 8 > 0))
+                        f32::from(u8::from(hash(seed, 200 + lane as u64) & 7 > 0))
                     })),
                 };
                 met += Arch::new().dispatch(asked());

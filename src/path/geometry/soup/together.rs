@@ -480,7 +480,10 @@ mod tests {
         core::array::from_fn(|axis| size * (unit_f32(hash(seed, 3 * k + axis as u64)) - 0.5))
     }
 
-    /// Large and small triangles, one in two of which is there twice, and a square of two that meet in its diagonal.
+    /// Squares along each side of the sheet.
+    const SQUARES: u16 = 24;
+
+    /// Triangles anywhere, and a sheet of others that meet in their edges.
     fn soup(count: u32, size: f32) -> Soup {
         let mut corners = Vec::new();
         for k in 0..u64::from(count) {
@@ -491,12 +494,25 @@ mod tests {
                 corners.push(core::array::from_fn(|axis| corner[axis] + edge[axis]));
             }
         }
-        let square = [[-0.5; 3], [0.5, -0.5, -0.5], [0.5; 3], [-0.5, 0.5, 0.5]];
-        corners.extend(square);
         let mut triangles: Vec<_> = (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
-        triangles.extend((0..count / 2).map(|k| [6 * k, 6 * k + 1, 6 * k + 2]));
-        triangles.extend([[0, 1, 2], [0, 2, 3]].map(|corners| corners.map(|k| 3 * count + k)));
+        for x in 0..=SQUARES {
+            corners.extend(
+                (0..=SQUARES)
+                    .map(|y| [x, y].map(line))
+                    .map(|[x, y]| [x, y, 0.0]),
+            );
+        }
+        for (x, y) in (0..SQUARES).flat_map(|x| (0..SQUARES).map(move |y| (x, y))) {
+            let corner = |x, y| 3 * count + u32::from(x * (SQUARES + 1) + y);
+            let [a, b] = [corner(x, y), corner(x + 1, y)];
+            triangles.extend([[a, b, b + 1], [a, b + 1, a + 1]]);
+        }
         Soup::new(vec![Mesh::new(corners, triangles).unwrap()]).unwrap()
+    }
+
+    /// Where the squares of the sheet meet.
+    fn line(number: u16) -> f32 {
+        f32::from(number) / f32::from(SQUARES) - 0.5
     }
 
     #[test]
@@ -508,18 +524,22 @@ mod tests {
                 let (spread, seed) = ([1e-3, 0.1, 1.0][(seed % 3) as usize], u64::from(seed));
                 let random = |k| Vec3A::from(vector(1000 + seed, k, 1.0));
                 let origin = Vec3A::from(vector(100 + seed, 0, 2.0));
-                // Side by side, or anywhere; some along an axis, to the diagonal of the square, and none at all.
+                // Side by side, or anywhere; one along an axis, some to edges of the sheet, and some that go nowhere.
                 let rays = core::array::from_fn(|lane| {
                     let k = 2 * lane as u64;
+                    let origin = origin + random(k + 1) * (0.1 * spread);
                     let direction = random(k) * spread - origin;
                     let direction = match lane {
                         3 => Vec3A::NEG_Y,
-                        4 | 5 => Vec3A::splat(unit_f32(hash(seed, k)) - 0.5) - origin,
-                        6 if seed % 5 == 0 => Vec3A::ZERO,
+                        4..8 => {
+                            let edge = line(u16::try_from(hash(seed, k) % 25).unwrap());
+                            (random(k) * spread).with_z(0.0).with_x(edge) - origin
+                        }
+                        8 if seed % 5 == 0 => Vec3A::ZERO,
                         _ => direction,
                     };
                     Ray {
-                        origin: origin + random(k + 1) * (0.1 * spread),
+                        origin,
                         direction: direction / direction.length().max(1e-3),
                     }
                 });

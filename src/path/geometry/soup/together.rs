@@ -518,7 +518,7 @@ mod tests {
     #[test]
     fn rays_that_go_together_meet_what_each_meets_alone() {
         let (mut met, mut lanes) = (0, 0);
-        for (count, size) in [(2, 0.5), (100, 0.3), (4000, 0.05), (1000, 3.0)] {
+        for (count, size) in [(2, 0.5), (100, 0.3), (4000, 0.05), (5000, 3.0)] {
             let soup = soup(count, size);
             for seed in 0..400_u32 {
                 let (spread, seed) = ([1e-3, 0.1, 1.0][(seed % 3) as usize], u64::from(seed));

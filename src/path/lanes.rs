@@ -77,7 +77,7 @@ pub(in crate::path) struct Mask<S: Simd> {
     lanes: S::m32s,
 }
 
-/// The number of a shape a lane.
+/// An index a lane.
 #[derive(Clone, Copy)]
 pub(in crate::path) struct Index<S: Simd> {
     lanes: S::u32s,
@@ -237,6 +237,12 @@ impl<S: Simd> Real<S> {
         self.mask(self.simd.equal_f32s(self.lanes, other.lanes))
     }
 
+    /// The least number of all lanes, none of which is NaN.
+    #[inline(always)]
+    pub(in crate::path) fn least(self) -> f32 {
+        self.simd.reduce_min_f32s(self.lanes)
+    }
+
     /// The larger number; the other if this one is NaN.
     #[inline(always)]
     pub(in crate::path) fn max(self, other: Self) -> Self {
@@ -281,12 +287,6 @@ impl<S: Simd> Mask<S> {
     #[inline(always)]
     pub(in crate::path) fn simd(self) -> S {
         self.simd
-    }
-
-    /// The first lane where it holds, or how many lanes there are.
-    #[inline(always)]
-    pub(in crate::path) fn first(self) -> usize {
-        self.simd.first_true_m32s(self.lanes)
     }
 
     /// Whether it holds in one lane, no more.
@@ -437,6 +437,44 @@ mod tests {
                 let smaller = first.lt(second).select(first, second);
                 assert_eq!(bits(first.max(second)), bits(larger), "{a} {b}");
                 assert_eq!(bits(first.min(second)), bits(smaller), "{a} {b}");
+            }
+        }
+    }
+
+    /// Lanes of which some are set.
+    struct Set(u32);
+
+    impl WithSimd for Set {
+        type Output = ();
+
+        fn with_simd<S: Simd>(self, simd: S) {
+            let set = |lane: usize| self.0 >> lane & 1 == 1;
+            let row = Row(core::array::from_fn(|lane| f32::from(u8::from(set(lane)))));
+            let mask = Real::load(simd, &row).gt(Real::splat(simd, 0.0));
+            let lanes = || 0..S::F32_LANES;
+            let number = lanes().filter(|&lane| set(lane)).count();
+            assert_eq!((mask.any(), mask.is_one()), (number > 0, number == 1));
+            let numbers = Row([7.0, 3.0, 9.0, 1.0, 8.0, 2.0, 6.0, 5.0]
+                .repeat(2)
+                .try_into()
+                .unwrap());
+            let numbers = mask.select(Real::load(simd, &numbers), Real::splat(simd, f32::INFINITY));
+            let least = numbers.row().0[lanes()]
+                .iter()
+                .copied()
+                .fold(f32::INFINITY, f32::min);
+            assert_eq!(numbers.least(), least);
+        }
+    }
+
+    #[test]
+    fn lanes_are_looked_at_together() {
+        for lanes in 0..1 << WIDEST {
+            Arch::new().dispatch(Set(lanes));
+            Set(lanes).with_simd(pulp::Scalar);
+            #[cfg(target_arch = "x86_64")]
+            if let Some(simd) = pulp::x86::V3::try_new() {
+                Set(lanes).with_simd(simd);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Many paths at once, one in each lane of the vectors that the machine has.
 //!
 //! For scenes of few shapes, and meshes and copies. Rays look for shapes and boxes around meshes and copies, and paths are lit by flat lights, skies and
-//! sources without size and scattered ideally diffusely, in lanes; all else goes lane by lane. Some hundred paths go segment by segment, those that end make
+//! sources without size and scattered ideally diffusely, in lanes; all else goes lane by lane. Some vectors of paths go segment by segment, those that end make
 //! room. Every lane has the bits of [`Paths::radiance`]: the same
 //! arithmetic in the same order, the coordinates read in the same order.
 

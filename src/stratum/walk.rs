@@ -50,9 +50,9 @@ impl<'a> Walk<'a> {
             sums
         });
         let (mut order, mut ends) = (Vec::with_capacity(strata), Vec::with_capacity(strata));
-        for (strata, sums) in blocks {
+        for (part, sums) in blocks {
             let before = ends.last().copied().unwrap_or(0);
-            order.extend(strata);
+            order.extend(part);
             ends.extend(sums.into_iter().map(|sum| before + sum));
         }
         Self::new(ends.into(), Order::Shuffled(order), longest)
@@ -462,8 +462,9 @@ mod tests {
 
     #[test]
     fn every_stratum_is_visited_once_with_its_points() {
-        let counts: Vec<u64> = (2..40).collect();
-        let walk = Walk::shuffled(38, |stratum| counts[stratum], 3, 256);
+        // In several blocks.
+        let counts: Vec<u64> = (2..3000).collect();
+        let walk = Walk::shuffled(counts.len(), |stratum| counts[stratum], 3, 256);
         let mut seen: Vec<_> = (0..counts.len()).map(|visit| walk.stratum(visit)).collect();
         for (visit, &stratum) in seen.iter().enumerate() {
             let before = visit.checked_sub(1).map_or(0, |visit| walk.ends[visit]);
@@ -471,6 +472,6 @@ mod tests {
         }
         assert!(!seen.is_sorted());
         seen.sort_unstable();
-        assert!(seen.into_iter().eq(0..38));
+        assert!(seen.into_iter().eq(0..counts.len()));
     }
 }

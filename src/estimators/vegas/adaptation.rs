@@ -134,8 +134,8 @@ impl<V: Value> Adaptation<V> {
         let longest = longest_part(self.points());
         let walk = match order {
             Order::Random => {
-                let count = |stratum| between(&self.ends, stratum);
-                Walk::shuffled(self.ends.len(), count, seed, longest)
+                let counts = |stratum| between(&self.ends, stratum);
+                Walk::shuffled(self.ends.len(), counts, seed, longest)
             }
             Order::Number => Walk::in_turn(&self.ends, longest),
         };

@@ -31,7 +31,8 @@ pub(super) struct Tree {
 
 /// What is in the leaves of a tree.
 pub(super) trait Leaves {
-    /// The place in a leaf of the nearest thing that is met before `limit`, and its distance.
+    /// The place in a leaf of the nearest thing that is met before `limit`, and its distance. At the limit itself things may be met that go before others
+    /// at the same distance, if those set the limit.
     fn nearest(&mut self, probe: &impl Probe, leaf: usize, limit: f32) -> Option<(usize, f32)>;
 
     /// Whether anything in a leaf is met before `limit`.

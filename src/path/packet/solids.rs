@@ -187,7 +187,7 @@ impl Rays<'_> {
 
 impl Solids {
     /// The solids that rays meet, of which those to the shapes `shapes` are met at the limit; round ones among them. Meshes and copies are
-    /// only looked for in the lanes that have 1 in `near`, unless it is known which `triangles` they meet.
+    /// only looked for in the lanes that have 1 in `near`; it may be known which `triangles` these meet first.
     #[inline(never)]
     pub(super) fn nearest(
         &self,

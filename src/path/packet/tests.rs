@@ -278,6 +278,10 @@ fn copies<B: Bsdf + Clone + From<Lambertian>, E: Environment>(
     };
     let triangles = (0..58).map(|first| [first, first + 1, first + 2]).collect();
     let mesh = Mesh::new(vectors(1.2), triangles)?.with_normals(vectors(2.0))?;
+    let beside = Mesh::new(
+        vectors(2.0),
+        (0..20).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect(),
+    )?;
     let places = (0_u8..5).map(|k| {
         let k = f32::from(k);
         let turned = Mat3A::from_rotation_y(k) * (0.15 + 0.1 * k);
@@ -296,6 +300,7 @@ fn copies<B: Bsdf + Clone + From<Lambertian>, E: Environment>(
         Object::new([ground], white.clone()),
         Object::new([lamp], white).emitting([6.0, 5.0, 4.0])?,
         Object::new(round()?, law.clone()),
+        Object::mesh(beside, law.clone()),
     ];
     let copies = Instances {
         objects: group,

@@ -173,7 +173,7 @@ pub(super) struct Laws<'a, S: Simd> {
     /// Where the law is another, which is asked by the points.
     other: Mask<S>,
     hits: Option<&'a Hits<'a>>,
-    /// Whether the paths are much alike so far.
+    /// Whether these are the first points of all paths.
     alike: bool,
 }
 
@@ -202,7 +202,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         left
     }
 
-    /// Takes every path one segment on, as an iteration of [`Paths::radiance`] does.
+    /// Takes the paths of a state one segment on, as an iteration of [`Paths::radiance`] does.
     #[inline(always)]
     fn step<S: Simd>(&mut self, simd: S, state: &mut State) {
         let packet = self.packet;
@@ -221,7 +221,7 @@ impl<U: Sampler, const PLAIN: bool> Walk<'_, U, PLAIN> {
         let segment = Real::load(simd, &state.segment);
 
         let walking = segment.gt(zero);
-        // Rays of paths that begin, of one pixel or its neighbours, run side by side.
+        // At first segments, of one pixel or its neighbours, rays run side by side.
         let alike = !segment.gt(one).any();
         let hit = packet.shapes.nearest(simd, origin, direction);
         let mut met = walking & hit.distance.lt(Real::splat(simd, f32::INFINITY));

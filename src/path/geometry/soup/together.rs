@@ -140,7 +140,7 @@ impl<S: Simd> Stack<S> {
         self.count + LANES > ROOM
     }
 
-    /// Adds the boxes of a node that any of the rays enters, the nearest last, as the first of the rays that enter each has it.
+    /// Adds the boxes of a node that any of the rays enters, the nearest last.
     #[inline(always)]
     fn push(&mut self, node: &Node, rays: &Inverted<S>, limit: Real<S>, mask: Mask<S>) {
         let begin = self.count;
@@ -153,7 +153,7 @@ impl<S: Simd> Stack<S> {
             if !mask.any() {
                 continue;
             }
-            let first = start.row().0[mask.first() % WIDEST];
+            let first = mask.select(start, limit.all(f32::INFINITY)).least();
             let mut place = self.count;
             while place > begin && self.visits[(place - 1) % ROOM].first < first {
                 self.visits[place % ROOM] = self.visits[(place - 1) % ROOM];
@@ -464,6 +464,7 @@ mod tests {
             let mut met = 0;
             for (lane, found) in found.iter().enumerate().take(S::F32_LANES) {
                 let (ray, limit) = (&self.rays[lane], self.limits[lane]);
+                assert!(alone_before(self.soup, ray, limit));
                 let bits = |met: InLeaf| (met.leaf, met.lane, met.distance.to_bits());
                 let alone = self.soup.nearest(ray, limit).map(bits);
                 let alone = alone.filter(|_| self.active.0[lane] > 0.0);
@@ -474,6 +475,12 @@ mod tests {
             assert!(found[S::F32_LANES..].iter().all(Option::is_none));
             met
         }
+    }
+
+    /// Whether what a ray meets alone is nearer than `limit`, if it meets anything.
+    fn alone_before(soup: &Soup, ray: &Ray, limit: f32) -> bool {
+        soup.nearest(ray, limit)
+            .is_none_or(|met| met.distance < limit)
     }
 
     fn vector(seed: u64, k: u64, size: f32) -> [f32; 3] {
@@ -536,6 +543,7 @@ mod tests {
                             (random(k) * spread).with_z(0.0).with_x(edge) - origin
                         }
                         8 if seed % 5 == 0 => Vec3A::ZERO,
+                        9 if seed % 5 == 1 => Vec3A::NAN,
                         _ => direction,
                     };
                     Ray {
@@ -543,20 +551,34 @@ mod tests {
                         direction: direction / direction.length().max(1e-3),
                     }
                 });
-                let limit = |lane: u64| match hash(seed, 100 + lane) % 4 {
-                    0 => unit_f32(hash(seed, lane)),
-                    _ => f32::INFINITY,
+                let limit = |lane: usize| {
+                    let random = hash(seed, 100 + lane as u64) % 8;
+                    // That of the first triangle too, which is not met then, and the next number.
+                    let distance = || {
+                        let met = soup.nearest(&rays[lane], f32::INFINITY);
+                        met.map_or(0.3, |met| met.distance)
+                    };
+                    match random {
+                        0 => unit_f32(hash(seed, lane as u64)),
+                        1 => distance(),
+                        2 => distance().next_up(),
+                        _ => f32::INFINITY,
+                    }
                 };
                 let asked = || Asked {
                     soup: &soup,
                     rays: &rays,
-                    limits: core::array::from_fn(|lane| limit(lane as u64)),
+                    limits: core::array::from_fn(limit),
                     active: Row(core::array::from_fn(|lane| {
                         f32::from(u8::from(hash(seed, 200 + lane as u64) & 7 > 0))
                     })),
                 };
                 met += Arch::new().dispatch(asked());
                 asked().with_simd(pulp::Scalar);
+                #[cfg(target_arch = "x86_64")]
+                if let Some(simd) = pulp::x86::V3::try_new() {
+                    asked().with_simd(simd);
+                }
                 lanes += WIDEST;
             }
         }

@@ -25,7 +25,7 @@ use copies::Copies;
 #[cfg(feature = "simd")]
 pub(in crate::path) use kind::{Kind, axis};
 #[cfg(feature = "simd")]
-pub(in crate::path) use probe::WIDER;
+pub(in crate::path) use probe::Inverted;
 pub(in crate::path) use soup::Soup;
 #[cfg(feature = "simd")]
 pub(in crate::path) use soup::together::{Rays, Triangles};

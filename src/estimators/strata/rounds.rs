@@ -16,7 +16,7 @@ impl<'a> Rounds<'a> {
     }
 
     /// How many strata there are.
-    pub(super) fn strata(&self) -> usize {
+    fn strata(&self) -> usize {
         self.ends.len()
     }
 

@@ -73,11 +73,12 @@ impl Node {
 
     /// The corners of a box.
     #[cfg(feature = "simd")]
+    #[inline(always)]
     pub(super) fn corners(&self, lane: usize) -> [Vec3A; 2] {
-        let [low_x, low_y, low_z, high_x, high_y, high_z] = self.bounds.map(|ends| ends[lane]);
+        let [low_x, low_y, low_z, high_x, high_y, high_z] = &self.bounds;
         [
-            Vec3A::new(low_x, low_y, low_z),
-            Vec3A::new(high_x, high_y, high_z),
+            Vec3A::new(low_x[lane], low_y[lane], low_z[lane]),
+            Vec3A::new(high_x[lane], high_y[lane], high_z[lane]),
         ]
     }
 

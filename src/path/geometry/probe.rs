@@ -1,5 +1,7 @@
 //! Rays, as eight boxes or eight flat shapes are asked for them.
 
+#[cfg(feature = "simd")]
+mod lanes;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 mod vectors;
 
@@ -8,6 +10,8 @@ use super::flats::{Bits, Flats, LANES, Lanes, bit, word};
 use super::node::Node;
 use crate::path::ray::{Ray, gamma};
 
+#[cfg(feature = "simd")]
+pub(in crate::path) use lanes::Inverted;
 #[cfg(all(feature = "simd", target_arch = "x86_64"))]
 pub(super) use vectors::Vectors;
 
@@ -69,7 +73,7 @@ impl Met {
 /// What rounding does to the distance of a box.[^ize]
 ///
 /// [^ize]: Ize, Thiago (2013). *Robust BVH Ray Traversal*. <https://jcgt.org/published/0002/02/02/>
-pub(in crate::path) const WIDER: f32 = 1.0 + 2.0 * gamma(3);
+pub(super) const WIDER: f32 = 1.0 + 2.0 * gamma(3);
 
 /// Which of the bounds of a box a ray enters through along each axis, as their place in [`Node::bounds`].
 #[inline(always)]

@@ -3,7 +3,7 @@
 use glam::Vec3A;
 use pulp::Simd;
 
-use crate::path::geometry::WIDER;
+use crate::path::geometry::Inverted;
 use crate::path::lanes::{Mask, Real, Vector};
 
 /// Boxes, given by two corners each.
@@ -19,31 +19,14 @@ impl Boxes {
         direction: Vector<S>,
         limit: Real<S>,
     ) -> Mask<S> {
-        let simd = limit.simd();
         let nowhere = limit.lt(limit);
         if self.0.is_empty() {
             return nowhere;
         }
-        let (zero, one) = (limit.all(0.0), limit.all(1.0));
-        let inverse = Vector {
-            x: one / direction.x,
-            y: one / direction.y,
-            z: one / direction.z,
-        };
-        // No closures: compilers do not always make them part of the function that is compiled for a machine.
+        let rays = Inverted::new(origin, direction);
         let mut entered = nowhere;
-        let backwards = [inverse.x.lt(zero), inverse.y.lt(zero), inverse.z.lt(zero)];
-        for [low, high] in &self.0 {
-            let low = (Vector::splat(simd, *low) - origin) * inverse;
-            let high = (Vector::splat(simd, *high) - origin) * inverse;
-            let (mut start, mut end) = (zero, limit);
-            let axes = [(low.x, high.x), (low.y, high.y), (low.z, high.z)];
-            for ((low, high), backwards) in axes.into_iter().zip(backwards) {
-                // NaN, of a ray within the plane of a side, tells nothing.
-                start = backwards.select(high, low).max(start);
-                end = backwards.select(low, high).min(end);
-            }
-            entered = entered | start.le(end * WIDER);
+        for corners in &self.0 {
+            entered = entered | rays.enter(*corners, limit).1;
         }
         entered
     }
@@ -55,8 +38,8 @@ mod tests {
 
     use super::*;
     use crate::hash::{hash, unit_f32};
-    use crate::path::Ray;
     use crate::path::lanes::{Row, WIDEST};
+    use crate::path::{Ray, gamma};
 
     /// One ray, asked for in all lanes.
     struct Asked<'a>(&'a Boxes, Ray, f32);
@@ -87,7 +70,7 @@ mod tests {
             start = if sides[0] > start { sides[0] } else { start };
             end = if sides[1] < end { sides[1] } else { end };
         }
-        start <= end * WIDER
+        start <= end * (1.0 + 2.0 * gamma(3))
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The radiance loop, a path a lane.
 
 mod choices;
+mod state;
 
 use core::f32::consts::FRAC_1_PI;
 
@@ -21,6 +22,7 @@ use crate::path::geometry;
 use crate::path::lanes::{Mask, Real, Row, Vector, WIDEST};
 use crate::path::light::{Sky, Surroundings};
 use crate::path::segment::End;
+use state::{Path, State};
 
 /// The paths of some points.
 ///
@@ -38,99 +40,8 @@ pub(super) struct Walk<'a, U, const PLAIN: bool> {
     pub(super) keeper: Option<Keeper<'a>>,
 }
 
-/// So many states are taken on in turn: more paths than this are more than the nearest cache holds.
+/// So many states are taken on in turn. With twice as many no difference was seen.
 const GROUPS: usize = 16;
-
-/// What the loop over single paths keeps in its variables, of each lane's path.
-#[derive(Clone, Copy)]
-struct State {
-    origin: [Row<f32>; 3],
-    direction: [Row<f32>; 3],
-    throughput: [Row<f32>; 3],
-    radiance: [Row<f32>; 3],
-    density: Row<f32>,
-    eta: Row<f32>,
-    /// Zero in a lane without a path.
-    segment: Row<f32>,
-    weight: Row<f32>,
-    /// Which point the path belongs to.
-    point: [usize; WIDEST],
-}
-
-/// The same of one path.
-struct Path {
-    origin: [f32; 3],
-    direction: [f32; 3],
-    throughput: [f32; 3],
-    radiance: [f32; 3],
-    density: f32,
-    eta: f32,
-    segment: f32,
-    weight: f32,
-    point: usize,
-}
-
-impl Path {
-    #[inline(always)]
-    fn begin(point: usize, start: &Start) -> Self {
-        let Start { ray, weight } = *start;
-        Self {
-            origin: ray.origin.to_array(),
-            direction: ray.direction.to_array(),
-            throughput: [1.0; 3],
-            radiance: [0.0; 3],
-            // The density of the camera's direction, which is no choice.
-            density: f32::INFINITY,
-            eta: 1.0,
-            segment: 1.0,
-            weight,
-            point,
-        }
-    }
-}
-
-impl State {
-    const IDLE: Self = Self {
-        origin: [Row::<f32>::ZERO; 3],
-        direction: [Row::<f32>::ZERO; 3],
-        throughput: [Row::<f32>::ZERO; 3],
-        radiance: [Row::<f32>::ZERO; 3],
-        density: Row::<f32>::ZERO,
-        eta: Row::<f32>::ZERO,
-        segment: Row::<f32>::ZERO,
-        weight: Row::<f32>::ZERO,
-        point: [usize::MAX; WIDEST],
-    };
-
-    /// The path of a lane.
-    #[inline(always)]
-    fn path(&self, lane: usize) -> Path {
-        Path {
-            origin: Row::numbers(&self.origin, lane),
-            direction: Row::numbers(&self.direction, lane),
-            throughput: Row::numbers(&self.throughput, lane),
-            radiance: Row::numbers(&self.radiance, lane),
-            density: self.density.0[lane],
-            eta: self.eta.0[lane],
-            segment: self.segment.0[lane],
-            weight: self.weight.0[lane],
-            point: self.point[lane],
-        }
-    }
-
-    #[inline(always)]
-    fn set(&mut self, lane: usize, path: Path) {
-        Row::set_numbers(&mut self.origin, lane, path.origin);
-        Row::set_numbers(&mut self.direction, lane, path.direction);
-        Row::set_numbers(&mut self.throughput, lane, path.throughput);
-        Row::set_numbers(&mut self.radiance, lane, path.radiance);
-        self.density.0[lane] = path.density;
-        self.eta.0[lane] = path.eta;
-        self.segment.0[lane] = path.segment;
-        self.weight.0[lane] = path.weight;
-        self.point[lane] = path.point;
-    }
-}
 
 impl<U: Sampler, const PLAIN: bool> WithSimd for Walk<'_, U, PLAIN> {
     type Output = ();

@@ -8,7 +8,7 @@ use pulp::{NullaryFnOnce, Simd};
 use super::{Block, Blocks, Soup};
 use crate::path::geometry::flats::{LANES, Lanes};
 use crate::path::geometry::node::{Child, Node};
-use crate::path::geometry::probe::WIDER;
+use crate::path::geometry::probe::{Inverted, WIDER};
 use crate::path::geometry::tree::InLeaf;
 use crate::path::lanes::{Index, Mask, Real, Row, Vector, WIDEST};
 use crate::path::ray::Ray;
@@ -148,7 +148,7 @@ impl<S: Simd> Stack<S> {
             if node.is_empty(lane) {
                 break;
             }
-            let (start, enters) = rays.enter(node, lane, limit);
+            let (start, enters) = rays.enter(node.corners(lane), limit);
             let mask = mask & enters;
             if !mask.any() {
                 continue;
@@ -167,50 +167,6 @@ impl<S: Simd> Stack<S> {
             };
             self.count += 1;
         }
-    }
-}
-
-/// Rays with what it takes to ask boxes.
-struct Inverted<S: Simd> {
-    origin: Vector<S>,
-    inverse: Vector<S>,
-    backwards: [Mask<S>; 3],
-}
-
-impl<S: Simd> Inverted<S> {
-    #[inline(always)]
-    fn new(origin: Vector<S>, direction: Vector<S>) -> Self {
-        let (zero, one) = (origin.x.all(0.0), origin.x.all(1.0));
-        let inverse = Vector {
-            x: one / direction.x,
-            y: one / direction.y,
-            z: one / direction.z,
-        };
-        Self {
-            origin,
-            inverse,
-            backwards: [inverse.x.lt(zero), inverse.y.lt(zero), inverse.z.lt(zero)],
-        }
-    }
-
-    /// Where each ray enters a box of a node, and whether it does before `limit`: the arithmetic of single rays.
-    #[inline(always)]
-    fn enter(&self, node: &Node, lane: usize, limit: Real<S>) -> (Real<S>, Mask<S>) {
-        let (mut start, mut end) = (limit.all(0.0), limit);
-        let axes = [
-            (self.origin.x, self.inverse.x),
-            (self.origin.y, self.inverse.y),
-            (self.origin.z, self.inverse.z),
-        ];
-        for (axis, (origin, inverse)) in axes.into_iter().enumerate() {
-            let low = (node.bounds[axis][lane] - origin) * inverse;
-            let high = (node.bounds[axis + 3][lane] - origin) * inverse;
-            let backwards = self.backwards[axis];
-            // NaN, of a ray within the plane of a side, tells nothing.
-            start = backwards.select(high, low).max(start);
-            end = backwards.select(low, high).min(end);
-        }
-        (start, start.le(end * WIDER))
     }
 }
 

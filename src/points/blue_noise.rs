@@ -1,16 +1,21 @@
 //! Points for all pixels of an image at once, whose errors are spread as blue noise.
 
 mod curve;
+mod scramble;
 
+use core::array;
 use core::ops::Range;
+use std::sync::LazyLock;
 
 use super::PointSet;
 use super::block::{Block, TOGETHER, vectorised};
-use super::scramble::scramble_reversed;
+use super::scramble::DigitOrder;
+use super::sobol::table;
 use crate::Error;
-use crate::hash::{hash, prepare, unit};
+use crate::hash::hash;
 
 use curve::{Curve, SAMPLES};
+use scramble::{Scramble, first_half};
 
 /// One net for all pixels of an image, dealt to them along a shuffled Morton curve: neighbouring pixels get points
 /// that complement one another.[^ahmed]
@@ -85,6 +90,9 @@ fn morton(pixel: [u32; 2]) -> u64 {
     x | y << 1
 }
 
+/// Dimensions that are a net together.
+const WIDTH: u32 = 4;
+
 /// Dimensions in which pixels complement one another.
 const SHARED: u32 = 16;
 
@@ -103,36 +111,21 @@ pub struct BlueNoisePixel {
 }
 
 impl BlueNoisePixel {
-    /// The points in the `N` dimensions from `first` on, of the image number `image`; if the first of them is shared among pixels, those that
-    /// are not are not to be asked for.
+    /// The net of the dimensions of a group, of the image number `image`, up to the pixel.
     #[inline(always)]
-    fn axes<const N: usize>(&self, image: u64, first: u32) -> Axes<N> {
+    fn net(&self, image: u64, group: u32) -> Net {
         let image = hash(self.image.seed, image);
-        let shared = first < SHARED;
+        let shared = group < SHARED / WIDTH;
         // What pixels have in common that share dimensions, or the pixel alone.
         let own = if shared {
             self.pixel / TILE
         } else {
             self.pixel
         };
-        let own = hash(hash(image, shared.into()), own);
-        let (mut prepared, mut scrambles, mut second) = ([0; N], [0; N], [0; N]);
-        for (lane, above) in (0..N).zip(0..) {
-            // Those past the last dimension are not asked for.
-            let dimension = first.wrapping_add(above);
-            let key = hash(own, u64::from(dimension / 2));
-            prepared[lane] = prepare(key);
-            scrambles[lane] = hash(!key, u64::from(dimension % 2));
-            second[lane] = u64::from(dimension % 2).wrapping_neg();
-        }
-        let curve = Curve {
-            prepared,
-            digits: 1,
-            shuffled: [0; N],
-        };
-        Axes {
-            scrambles,
-            second,
+        let key = hash(hash(hash(image, shared.into()), own), group.into());
+        let curve = Curve::new(key);
+        Net {
+            key,
             curve: match shared {
                 true => curve.followed_by(self.pixel % TILE, TILE.ilog2()),
                 false => curve,
@@ -145,29 +138,25 @@ impl PointSet for BlueNoisePixel {
     #[inline]
     fn coordinate(&self, index: u64, dimension: u32) -> f64 {
         let samples = self.image.samples;
-        let axes = self.axes::<1>(index >> samples, dimension);
-        let place = axes.curve.followed_by(index, samples).shuffled;
-        axes.coordinates(axes.digits(place))[0]
+        let net = self.net(index >> samples, dimension / WIDTH);
+        let place = net.curve.followed_by(index, samples).shuffled();
+        let axis = dimension % WIDTH;
+        let (scramble, digits) = (net.scramble(axis.into()), digits(place)[axis as usize]);
+        scramble.coordinate(first_half(digits), scramble.last_half(digits))
     }
 
     fn size(&self) -> Option<u64> {
         Some(1 << self.image.samples)
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "a small number")]
     fn fill(&self, first: u64, dimensions: Range<u32>, out: &mut [f64]) {
         let mut block = Block::new(first, dimensions, out, u32::MAX, 0);
-        // For all tiles: it takes a while to clear it.
-        let mut places = [[0; TOGETHER]; SAMPLES];
         vectorised(
             #[inline(always)]
             || {
-                let Range { start, end } = block.dimensions;
-                for part in [start..end.min(SHARED), start.max(SHARED)..end] {
-                    for first in part.clone().step_by(TOGETHER) {
-                        let tile = first..part.end.min(first.saturating_add(TOGETHER as u32));
-                        self.fill_tile(&mut block, tile, &mut places);
-                    }
+                let (first, end) = (block.dimensions.start / WIDTH, block.dimensions.end);
+                for group in (first..end.div_ceil(WIDTH)).step_by(GROUPS) {
+                    self.fill_groups(&mut block, group);
                 }
             },
         );
@@ -175,59 +164,67 @@ impl PointSet for BlueNoisePixel {
 }
 
 impl BlueNoisePixel {
-    /// Writes the coordinates in the dimensions of a tile, [`TOGETHER`] at most, into their columns of the block.
+    /// Writes the coordinates in the dimensions of [`GROUPS`] groups, as far as they are asked for, into their columns of the block.
     #[inline(always)]
     #[expect(
         clippy::cast_possible_truncation,
-        reason = "below the number of samples"
+        reason = "below the number of samples, and of dimensions in a row"
     )]
-    fn fill_tile(
-        &self,
-        block: &mut Block<'_>,
-        tile: Range<u32>,
-        places: &mut [[u64; TOGETHER]; SAMPLES],
-    ) {
-        debug_assert!(
-            tile.start >= SHARED || tile.end <= SHARED,
-            "all of {tile:?} shared, or none"
-        );
+    fn fill_groups(&self, block: &mut Block<'_>, group: u32) {
         let samples = self.image.samples;
-        let start = block.dimensions.start;
-        let columns = (tile.start - start) as usize..(tile.end - start) as usize;
+        let Range { start, end } = block.dimensions;
+        let dimension = group * WIDTH;
+        let asked = start.max(dimension)..end.min(dimension.saturating_add(TOGETHER as u32));
+        let lanes = (asked.start - dimension) as usize..(asked.end - dimension) as usize;
+        let column = (asked.start - start) as usize;
         // The digits of an index in base 4 begin at its highest bit, so that blocks that share all but the last few of them have as
         // many bits as are left over from base 4, and an even number.
         let bits = samples.min(SAMPLES.ilog2() - samples % 2);
-        let mut axes: Option<(u64, Axes<TOGETHER>)> = None;
+        let (near, width) = (&TABLES.near, block.width);
+        let mut nets: Option<(u64, [Net; GROUPS])> = None;
         let (mut index, mut out) = (block.first, &mut *block.out);
         while !out.is_empty() {
             let image = index >> samples;
-            let axes = match &axes {
-                Some((of, axes)) if *of == image => axes,
-                _ => &axes.insert((image, self.axes(image, tile.start))).1,
+            let nets = match &nets {
+                Some((of, nets)) if *of == image => nets,
+                _ => {
+                    let mut made = [Net::default(); GROUPS];
+                    for (net, next) in made.iter_mut().zip(0..) {
+                        // Past the last group there are dimensions that nobody asks for.
+                        *net = self.net(image, group.wrapping_add(next));
+                    }
+                    &nets.insert((image, made)).1
+                }
             };
-            let curve = axes.curve.followed_by(index >> bits, samples - bits);
-            // What the points have in common, and what tells them apart.
-            let common = axes.digits(curve.shuffled.map(|place| place << bits));
-            curve.all_that_follow(bits, places);
+            let mut common = Lanes::default();
+            let mut places = [[0; SAMPLES]; GROUPS];
+            for (number, (net, places)) in nets.iter().zip(&mut places).enumerate() {
+                let curve = net.curve.followed_by(index >> bits, samples - bits);
+                // What the points have in common, and what tells them apart.
+                common.set(number, net, curve.shuffled() << bits);
+                *places = curve.all_that_follow(bits);
+            }
             let place = (index % (1 << bits)) as usize;
-            let places = &mut places[place..1 << bits];
-            let now = places.len().min(out.len() / block.width);
-            let (rows, later) = out.split_at_mut(now * block.width);
-            let rows = rows.chunks_exact_mut(block.width);
-            if columns.len() == TOGETHER {
-                for (row, &mut place) in rows.zip(places) {
-                    let coordinates = axes.coordinates(axes.digits_near(place, &common));
-                    row[columns.start..][..TOGETHER].copy_from_slice(&coordinates);
-                }
-            } else {
-                // Whole vectors first, in the place of what they are made of: some of each is left out.
-                for place in places.iter_mut().take(now) {
-                    let coordinates = axes.coordinates(axes.digits_near(*place, &common));
-                    *place = coordinates.map(f64::to_bits);
-                }
-                for (row, bits) in rows.zip(places) {
-                    for (u, &bits) in row[columns.clone()].iter_mut().zip(bits.iter()) {
-                        *u = f64::from_bits(bits);
+            let now = ((1 << bits) - place).min(out.len() / width);
+            let (rows, later) = out.split_at_mut(now * width);
+            let digits =
+                |point: usize, group: usize| near[usize::from(places[group][point]) % SAMPLES];
+            let mut points = (place..).step_by(ROWS);
+            for rows in rows.chunks_mut(ROWS * width) {
+                let point = points.next().unwrap_or(0);
+                let next = (point + 1) % SAMPLES;
+                let apart = [
+                    digits(point, 0),
+                    digits(point, 1),
+                    digits(next, 0),
+                    digits(next, 1),
+                ];
+                let coordinates = common.coordinates(apart.as_flattened());
+                for (row, coordinates) in rows.chunks_exact_mut(width).zip(&coordinates) {
+                    if lanes.len() == TOGETHER {
+                        row[column..][..TOGETHER].copy_from_slice(coordinates);
+                    } else {
+                        row[column..][..lanes.len()].copy_from_slice(&coordinates[lanes.clone()]);
                     }
                 }
             }
@@ -237,114 +234,159 @@ impl BlueNoisePixel {
     }
 }
 
-/// Some dimensions of an image, each of a net in two, and the place of a pixel in them.
-struct Axes<const N: usize> {
-    /// What selects the scrambles.
-    scrambles: [u64; N],
-    /// All bits, where a dimension is the second of its net.
-    second: [u64; N],
-    /// Up to the pixel.
-    curve: Curve<N>,
+/// Groups whose coordinates are computed side by side.
+const GROUPS: usize = TOGETHER / WIDTH as usize;
+
+/// Points whose coordinates are.
+const ROWS: usize = 2;
+
+/// What some points have in common, dimension by dimension, once for each of the points that go together.
+#[derive(Default)]
+struct Lanes {
+    scrambles: [[Scramble; TOGETHER]; ROWS],
+    first: [[u32; TOGETHER]; ROWS],
+    last: [[u32; TOGETHER]; ROWS],
 }
 
-impl<const N: usize> Axes<N> {
-    /// The digits of the samples at some places on the curve.
+impl Lanes {
     #[inline(always)]
-    fn digits(&self, mut places: [u64; N]) -> [u64; N] {
-        for (digits, &second) in places.iter_mut().zip(&self.second) {
-            *digits = pascal(*digits, second);
+    fn set(&mut self, group: usize, net: &Net, place: u64) {
+        let lanes = group * WIDTH as usize..;
+        for ((lane, axis), digits) in lanes.zip(0..).zip(digits(place)) {
+            let scramble = net.scramble(axis);
+            for row in 0..ROWS {
+                self.scrambles[row][lane] = scramble;
+                self.first[row][lane] = first_half(digits);
+                self.last[row][lane] = scramble.last_half(digits);
+            }
         }
-        places
     }
 
-    /// The same of places of 8 bits at most after those that have some digits in common.
+    /// The coordinates of the points that are told apart from others by some digits.
     #[inline(always)]
-    fn digits_near(&self, mut places: [u64; N], common: &[u64; N]) -> [u64; N] {
-        let axes = self.second.iter().zip(common);
-        for (digits, (&second, &common)) in places.iter_mut().zip(axes) {
-            *digits = pascal_of_byte(*digits, second) ^ common;
-        }
-        places
-    }
-
-    /// The coordinates that have some digits before they are scrambled.
-    #[inline(always)]
-    fn coordinates(&self, digits: [u64; N]) -> [f64; N] {
-        let mut coordinates = [0.0; N];
-        let keyed = digits.into_iter().zip(&self.scrambles);
-        for (u, (digits, &key)) in coordinates.iter_mut().zip(keyed) {
-            *u = unit(scramble_reversed(digits, key));
+    fn coordinates(&self, apart: &[u32]) -> [[f64; TOGETHER]; ROWS] {
+        let mut coordinates = [[0.0; TOGETHER]; ROWS];
+        let scrambles = self.scrambles.as_flattened();
+        let (first, last) = (self.first.as_flattened(), self.last.as_flattened());
+        for (lane, u) in coordinates.as_flattened_mut().iter_mut().enumerate() {
+            *u = scrambles[lane].coordinate(first[lane] ^ apart[lane], last[lane]);
         }
         coordinates
     }
 }
 
-/// The second dimension of Sobol's points: the digits that its generator matrix, Pascal's triangle modulo 2, makes of the
-/// bits of an index, the first digit in the lowest bit. The first dimension has the bits themselves: `second` has no bits for
-/// that one, and all for the other.
-///
-/// The triangle is made of four squares, three of which are alike and one is 0; so are they in turn.
-#[inline(always)]
-const fn pascal(mut word: u64, second: u64) -> u64 {
-    word ^= word >> 32 & second;
-    word ^= word >> 16 & 0x0000_ffff_0000_ffff & second;
-    word ^= word >> 8 & 0x00ff_00ff_00ff_00ff & second;
-    pascal_of_byte(word, second)
+/// The net of a group of dimensions.
+#[derive(Clone, Copy, Default)]
+struct Net {
+    key: u64,
+    curve: Curve,
 }
 
-/// The same for each byte alone.
+impl Net {
+    #[inline(always)]
+    fn scramble(&self, axis: u64) -> Scramble {
+        Scramble::new(hash(!self.key, axis))
+    }
+}
+
+/// What the generator matrices of Sobol's first dimensions make of places, digits of which the first is the lowest bit.
+struct Tables {
+    /// What each bit of a place adds.
+    columns: [[u64; WIDTH as usize]; 64],
+    /// The digits of places below [`SAMPLES`].
+    near: [[u32; WIDTH as usize]; SAMPLES],
+}
+
+static TABLES: LazyLock<Tables> = LazyLock::new(|| {
+    let matrices = table(WIDTH, DigitOrder::FirstLowest);
+    let columns = array::from_fn(|bit| array::from_fn(|axis| matrices[axis][bit]));
+    let near = array::from_fn(|place| digits_by(&columns, place as u64).map(first_half));
+    Tables { columns, near }
+});
+
+/// The digits of the point at a place.
 #[inline(always)]
-const fn pascal_of_byte(mut word: u64, second: u64) -> u64 {
-    word ^= word >> 4 & 0x0f0f_0f0f_0f0f_0f0f & second;
-    word ^= word >> 2 & 0x3333_3333_3333_3333 & second;
-    word ^ word >> 1 & 0x5555_5555_5555_5555 & second
+fn digits(place: u64) -> [u64; WIDTH as usize] {
+    digits_by(&TABLES.columns, place)
+}
+
+/// The same, by the columns of the matrices.
+#[inline(always)]
+fn digits_by(columns: &[[u64; WIDTH as usize]; 64], place: u64) -> [u64; WIDTH as usize] {
+    let mut digits = [0; WIDTH as usize];
+    let mut rest = place;
+    while rest != 0 {
+        let column = &columns[rest.trailing_zeros() as usize % 64];
+        for (digits, column) in digits.iter_mut().zip(column) {
+            *digits ^= column;
+        }
+        rest &= rest - 1;
+    }
+    digits
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::points::scramble::DigitOrder;
-    use crate::points::sobol::{multiplied, table};
+    use crate::points::sobol::multiplied;
+
+    /// How many of the points are in each of the boxes that halve the axes so many times, if it is the same number everywhere.
+    fn equal_counts(points: &[[f64; 4]], halvings: [i32; 4]) -> Option<usize> {
+        let mut counts = std::collections::BTreeMap::new();
+        for point in points {
+            let cell: [u64; 4] =
+                array::from_fn(|axis| (point[axis] * 2_f64.powi(halvings[axis])).floor().to_bits());
+            *counts.entry(cell).or_insert(0) += 1;
+        }
+        let count = points.len() >> halvings.iter().sum::<i32>();
+        counts
+            .values()
+            .all(|&in_box| in_box == count)
+            .then_some(count)
+    }
 
     #[test]
     fn every_square_of_pixels_has_a_net() {
         for samples in [1, 2, 4, 8] {
             let image = BlueNoise::new(samples, 7).unwrap();
-            for (side, [x0, y0], pairs) in [
-                (1, [5, 2], [0, 4, 8, 1000]),
-                (2, [6, 2], [0, 4, 6, 7]),
-                (4, [8, 20], [0, 4, 6, 7]),
+            for (side, [x0, y0], groups) in [
+                (1, [5, 2], [0, 3, 4, 1000]),
+                (2, [6, 2], [0, 1, 2, 3]),
+                (4, [8, 20], [0, 1, 2, 3]),
             ] {
                 let pixels = (0..side * side).map(|k| [x0 + k % side, y0 + k / side]);
-                let count = samples * u64::from(side * side);
-                for pair in pairs {
-                    let points: Vec<[f64; 2]> = pixels
+                let levels = (samples * u64::from(side * side)).ilog2() as i32;
+                for group in groups {
+                    let points: Vec<[f64; 4]> = pixels
                         .clone()
                         .flat_map(|pixel| {
                             let points = image.pixel(pixel);
-                            (0..samples)
-                                .map(|sample| {
-                                    [0, 1].map(|d| points.coordinate(sample, 2 * pair + d))
-                                })
-                                .collect::<Vec<_>>()
+                            (0..samples).map(move |sample| {
+                                [0, 1, 2, 3].map(|axis| points.coordinate(sample, 4 * group + axis))
+                            })
                         })
                         .collect();
-                    let levels = count.trailing_zeros();
-                    for level in 0..=levels {
-                        let (columns, rows) =
-                            (f64::from(1 << level), f64::from(1 << (levels - level)));
-                        let mut cells: Vec<[u64; 2]> = points
-                            .iter()
-                            .map(|[u, v]| {
-                                [
-                                    (u * columns).floor().to_bits(),
-                                    (v * rows).floor().to_bits(),
-                                ]
-                            })
-                            .collect();
-                        cells.sort_unstable();
-                        cells.dedup();
-                        assert_eq!(cells.len() as u64, count, "{samples} {side} {level}");
+                    // The first two dimensions, and each of them, have the quality parameter 0, all four 3 (Sobol' 1967).
+                    for first in 0..=levels {
+                        assert_eq!(
+                            equal_counts(&points, [first, levels - first, 0, 0]),
+                            Some(1)
+                        );
+                    }
+                    for axis in 0..4 {
+                        let mut halvings = [0; 4];
+                        halvings[axis] = levels;
+                        assert_eq!(equal_counts(&points, halvings), Some(1));
+                    }
+                    let rest = levels - 3;
+                    for cell in 0..(rest + 1).max(0).pow(3) {
+                        let some = [cell, cell / (rest + 1), cell / (rest + 1).pow(2)]
+                            .map(|halvings| halvings % (rest + 1));
+                        let last = rest - some.iter().sum::<i32>();
+                        if last >= 0 {
+                            let halvings = [some[0], some[1], some[2], last];
+                            assert_eq!(equal_counts(&points, halvings), Some(8), "{halvings:?}");
+                        }
                     }
                 }
             }
@@ -390,11 +432,12 @@ mod tests {
     }
 
     #[test]
-    fn the_axes_are_those_of_sobol() {
-        let sobol = table(2, DigitOrder::FirstLowest);
+    fn the_dimensions_are_those_of_sobol() {
+        let sobol = table(WIDTH, DigitOrder::FirstLowest);
         for word in (0..200).map(|word| hash(4, word)) {
-            assert_eq!(multiplied(&sobol[0], word), pascal(word, 0));
-            assert_eq!(multiplied(&sobol[1], word), pascal(word, u64::MAX));
+            for (axis, matrix) in sobol.iter().enumerate() {
+                assert_eq!(multiplied(matrix, word), digits(word)[axis]);
+            }
         }
     }
 

@@ -1,105 +1,123 @@
 //! The Morton curve through the pixels of an image and their samples, in orders of its own everywhere.
 
-use crate::hash::hash_prepared;
+use crate::hash::{hash_prepared, prepare};
 
 /// Samples whose places on the curve are found together.
 pub(super) const SAMPLES: usize = 64;
 
 /// A place on the Morton curve whose digits in base 4 are permuted, each by a permutation that those above it choose: the four
-/// squares that make a larger one, and the samples of a pixel, come in an order of their own everywhere. So it does in
-/// each of some dimensions.
-#[derive(Clone, Copy)]
-pub(super) struct Curve<const N: usize> {
+/// squares that make a larger one, and the samples of a pixel, come in an order of their own everywhere.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Curve {
     /// What selects the permutations.
-    pub(super) prepared: [u64; N],
+    prepared: u64,
     /// The digits as they were, after a one that tells how many they are.
-    pub(super) digits: u64,
-    pub(super) shuffled: [u64; N],
+    digits: u64,
+    shuffled: u64,
 }
 
-impl<const N: usize> Curve<N> {
-    /// With the lowest `bits` bits of `word`, 32 at most, as its next digits. Where their number is odd, the last digit is in base 2.
+impl Curve {
+    /// All of it, in the orders that `key` selects.
     #[inline(always)]
-    pub(super) fn followed_by(mut self, word: u64, bits: u32) -> Self {
-        if bits == 0 {
-            return self;
+    pub(super) const fn new(key: u64) -> Self {
+        Self {
+            prepared: prepare(key),
+            digits: 1,
+            shuffled: 0,
         }
-        // In memory, digit by digit: what goes from one digit to the next lane by lane would not be computed in vectors.
-        let mut images = [[0; N]; 16];
+    }
+
+    /// With the lowest `bits` bits of `word` as its next digits. Where their number is odd, the last digit is in base 2.
+    #[inline(always)]
+    pub(super) const fn followed_by(mut self, word: u64, bits: u32) -> Self {
         let mut left = bits;
-        let mut done = 0;
         while left > 0 {
-            let base = left.min(2);
+            let base = if left == 1 { 1 } else { 2 };
             left -= base;
             let digit = word >> left & ((1 << base) - 1);
-            images[done] = self.order().images([0; N], digit, base);
-            for image in &mut images[done] {
-                *image <<= left;
-            }
-            done += 1;
+            self.shuffled = self.shuffled << base | self.order(0, 0).image(digit, base);
             self.digits = self.digits << base | digit;
-        }
-        for place in &mut self.shuffled {
-            *place <<= bits;
-        }
-        for images in &images[..done] {
-            for (place, image) in self.shuffled.iter_mut().zip(images) {
-                *place |= image;
-            }
         }
         self
     }
 
+    /// Where the digits have come to.
+    #[inline(always)]
+    pub(super) const fn shuffled(&self) -> u64 {
+        self.shuffled
+    }
+
     /// The ends of the places that follow when all numbers of `bits` bits come next, those of a sample at most.
     #[inline(always)]
-    pub(super) fn all_that_follow(&self, bits: u32, places: &mut [[u64; N]; SAMPLES]) {
-        places[0] = [0; N];
-        let mut done = 0;
-        while done < bits {
-            let base = (bits - done).min(2);
-            // From the last ones on, since what they become takes more room, and from their place on.
+    #[expect(clippy::cast_possible_truncation, reason = "below 64")]
+    pub(super) fn all_that_follow(&self, bits: u32) -> [u8; SAMPLES] {
+        let mut places = [0; SAMPLES];
+        // Squares of squares, for all of which code is made.
+        if bits >= 2 {
+            self.follow::<1>(0, &mut places);
+        }
+        if bits >= 4 {
+            self.follow::<4>(2, &mut places);
+        }
+        if bits >= 6 {
+            self.follow::<16>(4, &mut places);
+        }
+        if bits % 2 == 1 {
+            let done = bits - 1;
+            // From the last ones on, since what they become takes more room.
             for node in (0..1_usize << done).rev() {
-                let (before, order) = (places[node], self.following(node as u64, done).order());
-                let images = &mut places[node << base..][..1 << base];
-                for (image, digit) in images.iter_mut().zip(0..) {
-                    *image = order.images(before, digit, base);
-                }
+                let (before, order) = (places[node], self.order(node as u64, done));
+                places[2 * node] = before << 1 | order.image(0, 1) as u8;
+                places[2 * node + 1] = places[2 * node] ^ 1;
             }
-            done += base;
+        }
+        places
+    }
+
+    /// Puts behind each of the first `NODES` places, which are of `done` bits, all that may be the next digit.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "four numbers of two bits")]
+    fn follow<const NODES: usize>(&self, done: u32, places: &mut [u8; SAMPLES]) {
+        // Four places in each word.
+        let mut words = [0; NODES];
+        for ((word, &place), node) in words.iter_mut().zip(places.iter()).zip(0..) {
+            let images = self.order(node, done).images as u32;
+            let apart = (images | images << 6 | images << 12 | images << 18) & 0x0303_0303;
+            *word = u32::from(place) * 0x0404_0404 | apart;
+        }
+        for (four, word) in places.chunks_exact_mut(4).zip(words) {
+            four.copy_from_slice(&word.to_le_bytes());
         }
     }
 
-    /// With other digits after its own, of which nothing is shuffled.
+    /// The permutation of the digit that comes after those of its own and `bits` bits more.
     #[inline(always)]
-    fn following(&self, digits: u64, bits: u32) -> Self {
-        Self {
-            digits: self.digits << bits | digits,
-            ..*self
+    const fn order(&self, more: u64, bits: u32) -> Order {
+        let word = hash_prepared(self.prepared, self.digits << bits | more);
+        let map = ((word & 0xffff_ffff) * 6) >> 32;
+        Order {
+            images: LINEAR >> (8 * map) & 0xff ^ (word >> 62) * 0x55,
         }
-    }
-
-    /// The permutations of the digit that comes after the `digits`.
-    #[inline(always)]
-    fn order(&self) -> Order<N> {
-        let mut order = Order {
-            shifts: [0; N],
-            linear: [0; N],
-        };
-        let lanes = order.shifts.iter_mut().zip(&mut order.linear);
-        for ((shift, linear), &prepared) in lanes.zip(&self.prepared) {
-            let word = hash_prepared(prepared, self.digits);
-            let map = ((word & 0xffff_ffff) * 6) >> 32;
-            (*shift, *linear) = (word >> 62, LINEAR >> (8 * map));
-        }
-        order
     }
 }
 
-/// Permutations of the digits below 4: all of them are affine maps of two bits. For a digit below 2 a shift by the upper bit does.
-struct Order<const N: usize> {
-    shifts: [u64; N],
-    /// The images of the four digits under a linear map, two bits each, and more that has no meaning.
-    linear: [u64; N],
+/// A permutation of the digits below 4, or below 2: all of them are affine maps of two bits, or of one.
+#[derive(Clone, Copy)]
+struct Order {
+    /// The images of the four digits, two bits each.
+    images: u64,
+}
+
+impl Order {
+    /// The image of a digit of `base` bits.
+    #[inline(always)]
+    const fn image(self, digit: u64, base: u32) -> u64 {
+        if base == 2 {
+            self.images >> (2 * digit) & 3
+        } else {
+            digit ^ (self.images >> 1 & 1)
+        }
+    }
 }
 
 /// The six invertible maps of two bits: each has the images of 0, 1, 2 and 3.
@@ -118,27 +136,10 @@ const LINEAR: u64 = {
     word
 };
 
-impl<const N: usize> Order<N> {
-    /// Some places, each followed by the image of `digit`, which is one of `base` bits.
-    #[inline(always)]
-    fn images(&self, mut places: [u64; N], digit: u64, base: u32) -> [u64; N] {
-        let lanes = self.shifts.iter().zip(&self.linear);
-        for (place, (shift, linear)) in places.iter_mut().zip(lanes) {
-            let image = if base == 2 {
-                (linear >> (2 * digit) & 3) ^ shift
-            } else {
-                digit ^ (shift >> 1)
-            };
-            *place = *place << base | image;
-        }
-        places
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hash::{hash, prepare};
+    use crate::hash::hash;
 
     #[test]
     fn every_permutation_is_as_likely_as_the_others() {
@@ -147,15 +148,14 @@ mod tests {
         for (base, likely, bound) in [(2, 24, 70.6), (1, 2, 23.9)] {
             let mut seen = std::collections::BTreeMap::new();
             for key in (0..KEYS).map(u64::from) {
-                let curve = Curve {
-                    prepared: [prepare(hash(3, key))],
-                    // After some digits, or none.
-                    digits: 1 + key % 3,
-                    shuffled: [0],
-                };
+                // After some digits, or none.
+                let mut curve = Curve::new(hash(3, key));
+                curve.digits += key % 3;
                 let images: Vec<_> = (0..1 << base)
-                    .map(|digit| curve.followed_by(digit, base).shuffled)
+                    .map(|digit| curve.followed_by(digit, base).shuffled())
                     .collect();
+                let together = curve.all_that_follow(base).map(u64::from);
+                assert!(together.starts_with(&images));
                 *seen.entry(images).or_insert(0) += 1;
             }
             assert_eq!(seen.len(), likely);
@@ -167,7 +167,7 @@ mod tests {
             for images in seen.keys() {
                 let mut sorted = images.clone();
                 sorted.sort_unstable();
-                assert!(sorted.iter().map(|[image]| *image).eq(0..1 << base));
+                assert!(sorted.into_iter().eq(0..1 << base));
             }
         }
     }

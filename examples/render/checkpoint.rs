@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::state::State;
 
 /// To be counted up with every change of the values that a seed gives: rows of before and after it do not go together.
-const VALUES: u64 = 3;
+const VALUES: u64 = 4;
 
 /// A file that work is saved to.
 pub(crate) struct Checkpoint {

@@ -1,20 +1,18 @@
 //! Points for all pixels of an image at once, whose errors are spread as blue noise.
 
 mod curve;
+mod matrices;
 mod scramble;
 
-use core::array;
 use core::ops::Range;
-use std::sync::LazyLock;
 
 use super::PointSet;
 use super::block::{Block, TOGETHER, vectorised};
-use super::scramble::DigitOrder;
-use super::sobol::table;
 use crate::Error;
 use crate::hash::hash;
 
 use curve::{Curve, SAMPLES};
+use matrices::{TABLES, WIDTH, digits};
 use scramble::{Scramble, first_half};
 
 /// One net for all pixels of an image, dealt to them along a shuffled Morton curve: neighbouring pixels get points
@@ -28,7 +26,7 @@ use scramble::{Scramble, first_half};
 /// Pixels complement one another in the first 16 dimensions, which decide most of an image, and within squares of 256 by 256 pixels. Otherwise their
 /// nets know nothing of one another, which takes about half the time where coordinates are computed one by one.
 ///
-/// Dimensions come in pairs, each a net of its own in two dimensions with an order of its own: any number of them.
+/// Dimensions come in groups of four, each a net of its own with an order of its own: any number of them.
 /// [`pixel`](Self::pixel) gives the points of one pixel.
 ///
 /// ```
@@ -89,9 +87,6 @@ fn morton(pixel: [u32; 2]) -> u64 {
     });
     x | y << 1
 }
-
-/// Dimensions that are a net together.
-const WIDTH: u32 = 4;
 
 /// Dimensions in which pixels complement one another.
 const SHARED: u32 = 16;
@@ -289,46 +284,11 @@ impl Net {
     }
 }
 
-/// What the generator matrices of Sobol's first dimensions make of places, digits of which the first is the lowest bit.
-struct Tables {
-    /// What each bit of a place adds.
-    columns: [[u64; WIDTH as usize]; 64],
-    /// The digits of places below [`SAMPLES`].
-    near: [[u32; WIDTH as usize]; SAMPLES],
-}
-
-static TABLES: LazyLock<Tables> = LazyLock::new(|| {
-    let matrices = table(WIDTH, DigitOrder::FirstLowest);
-    let columns = array::from_fn(|bit| array::from_fn(|axis| matrices[axis][bit]));
-    let near = array::from_fn(|place| digits_by(&columns, place as u64).map(first_half));
-    Tables { columns, near }
-});
-
-/// The digits of the point at a place.
-#[inline(always)]
-fn digits(place: u64) -> [u64; WIDTH as usize] {
-    digits_by(&TABLES.columns, place)
-}
-
-/// The same, by the columns of the matrices.
-#[inline(always)]
-fn digits_by(columns: &[[u64; WIDTH as usize]; 64], place: u64) -> [u64; WIDTH as usize] {
-    let mut digits = [0; WIDTH as usize];
-    let mut rest = place;
-    while rest != 0 {
-        let column = &columns[rest.trailing_zeros() as usize % 64];
-        for (digits, column) in digits.iter_mut().zip(column) {
-            *digits ^= column;
-        }
-        rest &= rest - 1;
-    }
-    digits
-}
-
 #[cfg(test)]
 mod tests {
+    use core::array;
+
     use super::*;
-    use crate::points::sobol::multiplied;
 
     /// How many of the points are in each of the boxes that halve the axes so many times, if it is the same number everywhere.
     fn equal_counts(points: &[[f64; 4]], halvings: [i32; 4]) -> Option<usize> {
@@ -372,6 +332,13 @@ mod tests {
                             equal_counts(&points, [first, levels - first, 0, 0]),
                             Some(1)
                         );
+                    }
+                    // So have the last two among eight points.
+                    if levels <= 3 {
+                        for last in 0..=levels {
+                            let halvings = [0, 0, levels - last, last];
+                            assert_eq!(equal_counts(&points, halvings), Some(1));
+                        }
                     }
                     for axis in 0..4 {
                         let mut halvings = [0; 4];
@@ -427,16 +394,6 @@ mod tests {
             for image in &images {
                 let [one, other] = [one, other].map(|pixel| of(image, pixel, dimension));
                 assert_ne!(one, other, "dimension {dimension}");
-            }
-        }
-    }
-
-    #[test]
-    fn the_dimensions_are_those_of_sobol() {
-        let sobol = table(WIDTH, DigitOrder::FirstLowest);
-        for word in (0..200).map(|word| hash(4, word)) {
-            for (axis, matrix) in sobol.iter().enumerate() {
-                assert_eq!(multiplied(matrix, word), digits(word)[axis]);
             }
         }
     }

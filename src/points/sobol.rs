@@ -12,7 +12,7 @@ mod directions;
 
 pub use directions::DIMENSIONS;
 use directions::Matrices;
-pub(super) use directions::table;
+pub(super) use directions::{generator, table, van_der_corput};
 
 /// Sobol' points[^sobol] with the direction numbers of Joe and Kuo.[^joe]
 ///

@@ -83,7 +83,7 @@ impl Curve {
         for ((word, &place), node) in words.iter_mut().zip(places.iter()).zip(0..) {
             let images = self.order(node, done).images as u32;
             let apart = (images | images << 6 | images << 12 | images << 18) & 0x0303_0303;
-            *word = u32::from(place) * 0x0404_0404 | apart;
+            *word = (u32::from(place) * 0x0404_0404) | apart;
         }
         for (four, word) in places.chunks_exact_mut(4).zip(words) {
             four.copy_from_slice(&word.to_le_bytes());
@@ -96,7 +96,7 @@ impl Curve {
         let word = hash_prepared(self.prepared, self.digits << bits | more);
         let map = ((word & 0xffff_ffff) * 6) >> 32;
         Order {
-            images: LINEAR >> (8 * map) & 0xff ^ (word >> 62) * 0x55,
+            images: ((LINEAR >> (8 * map)) & 0xff) ^ ((word >> 62) * 0x55),
         }
     }
 }

@@ -65,6 +65,7 @@ mod tests {
     use crate::hash::hash;
 
     /// The digits of the coordinate, as a number of 53 bits.
+    #[expect(clippy::cast_possible_truncation, reason = "a whole number of 53 bits")]
     fn scrambled(digits: u64, key: u64) -> u64 {
         let scramble = Scramble::new(key);
         let u = scramble.coordinate(first_half(digits), scramble.last_half(digits));

@@ -79,24 +79,29 @@ fn matrices() -> impl Iterator<Item = Columns> {
 }
 
 /// The first dimension: the digits of the index, reversed.
-fn van_der_corput() -> Columns {
+pub(in crate::points) fn van_der_corput() -> Columns {
     core::array::from_fn(|bit| 1 << (63 - bit))
 }
 
 /// The matrix of a line of the table.
-///
-/// The line holds a primitive polynomial of degree `s` with the inner coefficients `a`, and the first `s` odd
-/// numbers `m_k < 2^k`. Column `k`, from 1, is `m_k / 2^k`; each later one is a sum of the `s` before it.
 fn matrix(line: &str) -> Columns {
-    let mut numbers = line
+    let numbers: Vec<u64> = line
         .split_whitespace()
-        .map(|number| number.parse::<u64>().expect("the table holds numbers"));
-    let mut next = || numbers.next().expect("the lines of the table are whole");
-    let (_, degree, inner) = (next(), next(), next());
-    let degree = usize::try_from(degree).expect("degrees are small");
+        .map(|number| number.parse().expect("the table holds numbers"))
+        .collect();
+    let [_, _, inner, directions @ ..] = &numbers[..] else {
+        panic!("the lines of the table are whole");
+    };
+    generator(*inner, directions)
+}
+
+/// The matrix of a primitive polynomial whose degree `s` is the number of the `directions`, with the inner coefficients `inner`. The
+/// directions are odd numbers `m_k < 2^k`: column `k`, from 1, is `m_k / 2^k`; each later one is a sum of the `s` before it.
+pub(in crate::points) fn generator(inner: u64, directions: &[u64]) -> Columns {
+    let degree = directions.len();
     let mut columns = [0; 64];
-    for (k, column) in columns[..degree].iter_mut().enumerate() {
-        *column = next() << (63 - k);
+    for (k, (column, direction)) in columns.iter_mut().zip(directions).enumerate() {
+        *column = direction << (63 - k);
     }
     for k in degree..64 {
         let oldest = columns[k - degree];

@@ -41,6 +41,15 @@ pub(crate) struct Job<'a> {
     pub(crate) stop: &'a AtomicBool,
 }
 
+/// Says that something is over, after a panic too: who waits for it would wait for ever.
+struct OnDrop<'a>(&'a AtomicBool);
+
+impl Drop for OnDrop<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
 impl Job<'_> {
     /// Renders until the plan is fulfilled or somebody stops it. It goes on with the work of the checkpoint, and leaves
     /// its own there.
@@ -53,8 +62,10 @@ impl Job<'_> {
         let finished = AtomicBool::new(false);
         let outcome = std::thread::scope(|scope| {
             let watch = scope.spawn(|| self.watch(&state, &finished));
-            let outcome = self.passes(&state);
-            finished.store(true, Ordering::Relaxed);
+            let outcome = {
+                let _finished = OnDrop(&finished);
+                self.passes(&state)
+            };
             let watched = watch
                 .join()
                 .unwrap_or_else(|_| Err("the progress was lost".to_owned()));

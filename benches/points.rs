@@ -1,5 +1,6 @@
-//! What a coordinate costs: whole blocks (`fill/d8`, `fill/d32`, `fill/d128`) and single ones (`coordinate`), beside the
-//! generators and point sets that one could take instead, and beside a plain store as the limit.
+//! What a coordinate costs: whole blocks (`fill/d8`, `fill/d32`, `fill/d128`), all samples of one pixel after the other (`pixel/1` to
+//! `pixel/256`) and single ones (`coordinate`), beside the generators and point sets that one could take instead, and beside a plain store
+//! as the limit.
 //!
 //! Criterion reports elements, which are coordinates, per second. A ratio needs both sides in turns, so that what else the machine does
 //! hits both:
@@ -16,7 +17,7 @@ use criterion::{BenchmarkGroup, Criterion, Throughput};
 use estimand::points::{
     BlueNoise, DigitPermutation, DigitalShift, Faure, Halton, Hammersley, HashedOwen, Independent,
     Kronecker, Lattice, LatticeSequence, LinearMatrix, MultiJittered, NRooks, OrthogonalArray,
-    Owen, PointSet, Rescrambled, Sobol, Stratified,
+    Owen, PointSet, Rescrambled, Sobol, Stratified, pixel,
 };
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 
@@ -210,6 +211,39 @@ fn fill(criterion: &mut Criterion, dimensions: u32) {
     group.finish();
 }
 
+/// Some samples of many pixels, of which each has points of its own, in as many dimensions as paths ask for at once.
+fn pixels(criterion: &mut Criterion, samples: u64) {
+    const DIMENSIONS: u32 = 24;
+    let mut group = settings(criterion, &format!("pixel/{samples}"));
+    let mut out = vec![0.0; usize::try_from(samples).unwrap() * DIMENSIONS as usize];
+    group.throughput(Throughput::Elements(out.len() as u64));
+    let image = BlueNoise::new(samples, SEED).unwrap();
+    let groups = Rescrambled::new(4, SEED).unwrap();
+    let mut bench = |name, fill: &dyn Fn([u32; 2], &mut [f64])| {
+        let mut pixels = (0..256).flat_map(|y| (0..256).map(move |x| [x, y])).cycle();
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| fill(pixels.next().unwrap(), black_box(&mut out)));
+        });
+    };
+    bench("BlueNoise", &|pixel, out| {
+        image.pixel(pixel).fill(0, 0..DIMENSIONS, out);
+    });
+    let seed = |pixel| pixel::seed(pixel, SEED);
+    bench("Rescrambled", &|pixel, out| {
+        groups.reseeded(seed(pixel)).fill(0, 0..DIMENSIONS, out);
+    });
+    bench("Sobol, HashedOwen", &|pixel, out| {
+        let sobol = Sobol::new(DIMENSIONS).unwrap();
+        let seed = seed(pixel);
+        let points = sobol.scrambled(HashedOwen { seed });
+        points.fill(0, 0..DIMENSIONS, out);
+    });
+    bench("Independent", &|pixel, out| {
+        Independent::new(seed(pixel)).fill(0, 0..DIMENSIONS, out);
+    });
+    group.finish();
+}
+
 const PRIMES: [u8; 54] = [
     2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97,
     101, 103, 107, 109, 113, 127, 131, 137, 139, 149, 151, 157, 163, 167, 173, 179, 181, 191, 193,
@@ -246,6 +280,8 @@ fn coordinate(criterion: &mut Criterion) {
         "Rescrambled",
         &Rescrambled::new(4, seed).unwrap(),
     );
+    let image = BlueNoise::new(1 << 20, seed).unwrap();
+    bench(&mut group, "BlueNoise", &image.pixel([3, 4]));
     bench(&mut group, "Halton", &halton);
     let permuted = halton.clone().scrambled(DigitPermutation { seed });
     bench(&mut group, "Halton, DigitPermutation", &permuted);
@@ -387,6 +423,9 @@ fn main() {
     threads(&mut criterion);
     for dimensions in [8, 32, 128] {
         fill(&mut criterion, dimensions);
+    }
+    for samples in [1, 4, 16, 64, 256] {
+        pixels(&mut criterion, samples);
     }
     coordinate(&mut criterion);
     criterion.final_summary();

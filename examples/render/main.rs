@@ -51,7 +51,7 @@ struct Arguments {
     points: Option<Points>,
     /// Into how many independent renders the samples of --spp are split, whose spread gives the error: 16 with --std-error, otherwise 2 if the
     /// points are a finite set. Sequences, and blue noise where --spp is a power of two, are rendered in two parts of one set, which tell of more noise than
-    /// there is: by a tenth to a fifth, of blue noise by up to a half. With --adaptive the first samples are two renders of their own, and there are at least
+    /// there is: by a tenth to a fifth, of blue noise by up to two fifths at 64 samples and two thirds at eight. With --adaptive the first samples are two renders of their own, and there are at least
     /// three
     #[arg(long, value_name = "N", conflicts_with_all = ["time", "noise"], value_parser = clap::value_parser!(u64).range(1..))]
     replicates: Option<u64>,

@@ -13,7 +13,7 @@ use estimand::{Error, hash};
 /// A point set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Points {
-    /// Sobol's points, two dimensions at a time, dealt to the pixels so that the error is blue noise
+    /// Sobol's points, four dimensions at a time, dealt to the pixels so that the error is blue noise
     BlueNoise,
     /// Sobol's points, Owen-scrambled by hashing
     Sobol,

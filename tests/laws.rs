@@ -258,11 +258,11 @@ laws_of_random_sets! {
         Sobol::new(4).unwrap().scrambled(HashedOwen { seed }), 4, NRooks::new(64, !seed).unwrap()).unwrap();
     blue_noise_of_a_sample: |seed| BlueNoise::new(1, seed).unwrap().pixel([3, 4]);
     blue_noise_of_two_samples: |seed| BlueNoise::new(2, seed).unwrap().pixel([3, 4]);
-    blue_noise_of_more_than_a_group_at_even_powers: |seed| BlueNoise::new(1 << 10, seed).unwrap().pixel([3, 4]);
+    blue_noise_of_1024_samples: |seed| BlueNoise::new(1 << 10, seed).unwrap().pixel([3, 4]);
     blue_noise_of_the_most_samples: |seed| BlueNoise::new(1 << 32, seed).unwrap().pixel([3, 4]);
     blue_noise: |seed| BlueNoise::new(16, seed).unwrap().pixel([3, 4]);
-    blue_noise_of_several_groups: |seed| BlueNoise::new(64, seed).unwrap().pixel([3, 70_004]);
-    blue_noise_of_several_groups_at_odd_powers: |seed| BlueNoise::new(32, seed).unwrap().pixel([9, 9]);
+    blue_noise_of_64_samples: |seed| BlueNoise::new(64, seed).unwrap().pixel([3, 70_004]);
+    blue_noise_of_32_samples: |seed| BlueNoise::new(32, seed).unwrap().pixel([9, 9]);
     blue_noise_of_many_samples: |seed| BlueNoise::new(1 << 9, seed).unwrap().pixel([3, 4]);
     blue_noise_at_odd_powers: |seed| BlueNoise::new(8, seed).unwrap().pixel([70_000, 4]);
 }

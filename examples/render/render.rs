@@ -1,6 +1,7 @@
 //! Rendering in passes.
 
 use std::error::Error;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -41,15 +42,6 @@ pub(crate) struct Job<'a> {
     pub(crate) stop: &'a AtomicBool,
 }
 
-/// Says that something is over, after a panic too: who waits for it would wait for ever.
-struct OnDrop<'a>(&'a AtomicBool);
-
-impl Drop for OnDrop<'_> {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-}
-
 impl Job<'_> {
     /// Renders until the plan is fulfilled or somebody stops it. It goes on with the work of the checkpoint, and leaves
     /// its own there.
@@ -62,14 +54,13 @@ impl Job<'_> {
         let finished = AtomicBool::new(false);
         let outcome = std::thread::scope(|scope| {
             let watch = scope.spawn(|| self.watch(&state, &finished));
-            let outcome = {
-                let _finished = OnDrop(&finished);
-                self.passes(&state)
-            };
+            // Who waits for the end would wait for ever after a panic, and what was done before would be lost.
+            let outcome = catch_unwind(AssertUnwindSafe(|| self.passes(&state)));
+            finished.store(true, Ordering::Relaxed);
             let watched = watch
                 .join()
                 .unwrap_or_else(|_| Err("the progress was lost".to_owned()));
-            outcome.and(watched)
+            outcome.map(|outcome| outcome.and(watched))
         });
         let state = state
             .into_inner()
@@ -77,7 +68,7 @@ impl Job<'_> {
         if let Some(checkpoint) = self.checkpoint {
             checkpoint.save(&state)?;
         }
-        outcome?;
+        outcome.unwrap_or_else(|panic| resume_unwind(panic))?;
         Ok(state)
     }
 

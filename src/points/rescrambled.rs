@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use super::block::{Block, vectorised};
 use super::scramble::{
-    Columns, DigitOrder, ENDINGS, Ending, scramble, scramble_endings, scramble_reversed,
+    Columns, DigitOrder, ENDINGS, Ending, NestedHash, first_half, scramble, scramble_endings,
 };
 use super::sobol::{multiplied, table};
 use super::{PointSet, Sobol};
@@ -24,8 +24,8 @@ use crate::hash::{GOLDEN, hash, mix, unit};
 /// With groups of two this is a progressive (0,2) sequence in every pair: any aligned block of `2^m` points has one in
 /// every elementary interval of area `2^-m`.[^pmj] Take powers of two.
 ///
-/// Exact at every index; see [`Sobol`] for what holds past 2^53 points. Scrambled as by
-/// [`HashedOwen`](super::HashedOwen); the order is shuffled among the points from `2^m` to
+/// Exact at every index; see [`Sobol`] for what holds past 2^53 points. Scrambled by
+/// hashing, the first 32 digits for themselves; the order is shuffled among the points from `2^m` to
 /// `2^(m + 1) - 1`, so that prefixes remain nets.
 ///
 /// ```
@@ -77,7 +77,8 @@ impl Rescrambled {
         let (group, axis) = (dimension / width, dimension % width);
         let key = hash(seed, group as u64);
         let digits = multiplied(&self.matrices[axis], shuffled(index, key));
-        scramble_reversed(digits, axis_key(key, axis))
+        let scramble = NestedHash::new(axis_key(key, axis));
+        scramble.digits(first_half(digits), scramble.last_half(digits))
     }
 }
 
@@ -151,7 +152,7 @@ impl PointSet for Rescrambled {
 const POINTS: usize = ENDINGS;
 
 /// Coordinates in a vector.
-const LANES: usize = 8;
+const LANES: usize = 16;
 
 /// The places in a block, each as the ending of an index: its first digit is the lowest bit.
 #[expect(clippy::cast_possible_truncation, reason = "places are below 64")]
@@ -179,7 +180,7 @@ impl Rescrambled {
     fn fill_axes<const N: usize>(
         &self,
         matrices: &[Columns; N],
-        known: Option<&[[u64; N]; POINTS]>,
+        known: Option<&[[u32; N]; POINTS]>,
         axis: usize,
         block: &mut Block<'_>,
     ) {
@@ -189,7 +190,7 @@ impl Rescrambled {
             block.dimensions.end as usize,
         );
         let mut made = None;
-        let mut words = [[0; N]; POINTS];
+        let mut words = [[0_u32; N]; POINTS];
         let mut coordinates = [[0.0; N]; POINTS];
         for group in start / width..end.div_ceil(width) {
             // Those of the dimensions that are asked for.
@@ -200,7 +201,10 @@ impl Rescrambled {
             }
             let table = known.unwrap_or_else(|| made.get_or_insert_with(|| combinations(matrices)));
             let key = hash(self.seed, group as u64);
-            let keys: [u64; LANES] = core::array::from_fn(|lane| axis_key(key, axis + lane % N));
+            let mut scrambles = [NestedHash::default(); N];
+            for (above, scramble) in scrambles.iter_mut().enumerate() {
+                *scramble = NestedHash::new(axis_key(key, axis + above));
+            }
 
             let mut index = block.first;
             let mut out = &mut *block.out;
@@ -219,10 +223,15 @@ impl Rescrambled {
                         *shuffled = (place & kept) | (*shuffled & !kept);
                     }
                 }
-                let common = matrices
-                    .each_ref()
-                    .map(|columns| multiplied(columns, above));
-                let common: [u64; LANES] = core::array::from_fn(|lane| common[lane % N]);
+                let mut common = [(NestedHash::default(), 0, 0); N];
+                for (axis, columns) in matrices.iter().enumerate() {
+                    let (scramble, digits) = (scrambles[axis], multiplied(columns, above));
+                    common[axis] = (scramble, first_half(digits), scramble.last_half(digits));
+                }
+                let mut lanes = [(NestedHash::default(), 0, 0); LANES];
+                for (lane, of_lane) in lanes.iter_mut().enumerate() {
+                    *of_lane = common[lane % N];
+                }
                 for (word, &place) in words.iter_mut().zip(&places[POINTS - left..][..count]) {
                     *word = table[within_block(place.into())];
                 }
@@ -230,7 +239,8 @@ impl Rescrambled {
                 let results = coordinates.as_flattened_mut().chunks_exact_mut(LANES);
                 for (us, words) in results.zip(vectors).take((count * N).div_ceil(LANES)) {
                     for (lane, u) in us.iter_mut().enumerate() {
-                        *u = unit(scramble_reversed(words[lane] ^ common[lane], keys[lane]));
+                        let (scramble, first, last) = lanes[lane];
+                        *u = unit(scramble.digits(first ^ words[lane], last));
                     }
                 }
                 let rows = rows.chunks_exact_mut(stride);
@@ -253,7 +263,7 @@ impl Rescrambled {
 }
 
 /// The table of the first four dimensions, which takes as long to make as the coordinates of a few points.
-static FIRST_FOUR: OnceLock<[[u64; 4]; POINTS]> = OnceLock::new();
+static FIRST_FOUR: OnceLock<[[u32; 4]; POINTS]> = OnceLock::new();
 
 /// The place of a point in its aligned block.
 #[inline(always)]
@@ -267,13 +277,13 @@ fn within_block(index: u64) -> usize {
 
 /// What the low bits of an index add to the digits of every dimension, for each [ending](Ending) of an index.
 #[inline(always)]
-fn combinations<const N: usize>(matrices: &[Columns; N]) -> [[u64; N]; POINTS] {
+fn combinations<const N: usize>(matrices: &[Columns; N]) -> [[u32; N]; POINTS] {
     let mut table = [[0; N]; POINTS];
     for bit in 0..BITS {
         let (done, next) = table.split_at_mut(1 << bit);
         for (done, next) in done.iter().zip(next) {
             for ((next, done), columns) in next.iter_mut().zip(done).zip(matrices) {
-                *next = done ^ columns[BITS - 1 - bit];
+                *next = done ^ first_half(columns[BITS - 1 - bit]);
             }
         }
     }

@@ -25,13 +25,15 @@ mod digit_permutation;
 mod digital_shift;
 mod hashed_owen;
 mod linear_matrix;
+mod nested_hash;
 mod owen;
 
 pub use digit_permutation::DigitPermutation;
 pub use digital_shift::DigitalShift;
 pub use hashed_owen::HashedOwen;
-pub(super) use hashed_owen::{ENDINGS, Ending, scramble, scramble_endings, scramble_reversed};
+pub(super) use hashed_owen::{ENDINGS, Ending, scramble, scramble_endings};
 pub use linear_matrix::LinearMatrix;
+pub(super) use nested_hash::{NestedHash, first_half};
 pub use owen::Owen;
 
 /// The generator matrix over the two-element field that makes the binary digits of one dimension: column `k` is what bit

@@ -48,7 +48,7 @@ pub(in crate::points) fn scramble(digits: u64, key: u64) -> u64 {
 
 /// The same of digits whose first is the lowest bit; in the result it is the highest.
 #[inline(always)]
-pub(in crate::points) fn scramble_reversed(reversed: u64, key: u64) -> u64 {
+fn scramble_reversed(reversed: u64, key: u64) -> u64 {
     laine_karras(reversed, key).reverse_bits()
 }
 

@@ -102,8 +102,9 @@ impl Reference {
     /// Welch and Satterthwaite, and Sidak's correction for their number.
     ///
     /// A short run may have missed the rare bright paths of a pixel altogether, and its own variance with them;
-    /// the variance that the reference predicts for independent samples then stands in for it. It only
-    /// widens the error, so that the rate of false alarms is a bound.
+    /// the variance that the reference predicts for independent samples then stands in for it. Where it has seen nothing, as
+    /// where light comes with the tail of a filter alone, that is at most the one of values up to the brightest pixel which have
+    /// the mean of the reference. It only widens the error, so that the rate of false alarms is a bound.
     pub(crate) fn compare(&self, ours: &Batches, label: &str) -> Agreement {
         let means = at_scales(&self.image);
         let errors = self.image.std_error().expect("a reference has errors");
@@ -117,6 +118,8 @@ impl Reference {
         let tiles = tiles.iter().map(|&v| v / tile).collect();
         let variances = [fine, tiles, vec![whole[0] / pixels]];
         let ratio = self.samples as f64 / ours.samples as f64;
+        let brightest = means[0].iter().copied().fold(DVec3::ZERO, DVec3::max);
+        let all = self.image.pixels().len();
 
         let mut worst: Option<Finding> = None;
         let mut tests = 0_u32;
@@ -143,7 +146,13 @@ impl Reference {
                     tests += 1;
                     let here = moments.variance().expect("several batches")[component]
                         / moments.count() as f64;
-                    let guarded = here.max(ratio * there);
+                    let unseen = if mean == 0.0 {
+                        let samples = ours.samples * (all / means[scale].len()) as u64;
+                        expected * brightest[component] / samples as f64
+                    } else {
+                        0.0
+                    };
+                    let guarded = here.max(ratio * there).max(unseen);
                     let t = difference / (guarded + there).sqrt();
                     let freedom = (guarded + there).powi(2)
                         / (guarded.powi(2) / (moments.count() - 1) as f64

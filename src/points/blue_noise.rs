@@ -138,8 +138,10 @@ impl PointSet for BlueNoisePixel {
         let net = self.net(index >> samples, dimension / WIDTH);
         let place = net.curve.followed_by(index, samples).shuffled();
         let axis = dimension % WIDTH;
-        let (scramble, digits) = (net.scramble(axis.into()), digits(place)[axis as usize]);
-        unit(scramble.digits(first_half(digits), scramble.last_half(digits)))
+        unit(
+            net.scramble(axis.into())
+                .scrambled(digits(place)[axis as usize]),
+        )
     }
 
     fn size(&self) -> Option<u64> {

@@ -77,8 +77,7 @@ impl Rescrambled {
         let (group, axis) = (dimension / width, dimension % width);
         let key = hash(seed, group as u64);
         let digits = multiplied(&self.matrices[axis], shuffled(index, key));
-        let scramble = NestedHash::new(axis_key(key, axis));
-        scramble.digits(first_half(digits), scramble.last_half(digits))
+        NestedHash::new(axis_key(key, axis)).scrambled(digits)
     }
 }
 

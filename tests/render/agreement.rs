@@ -102,8 +102,8 @@ impl Reference {
     /// Welch and Satterthwaite, and Sidak's correction for their number.
     ///
     /// A short run may have missed the rare bright paths of a pixel altogether, and its own variance with them;
-    /// the variance that the reference predicts for independent samples then stands in for it. Where it has seen nothing, as
-    /// where light comes with the tail of a filter alone, that is at most the one of values up to the brightest pixel which have
+    /// the variance that the reference predicts for independent samples then stands in for it. Where it has seen nothing of a tile, as
+    /// where light comes with the tail of a filter alone, the spread is at most the one of values up to the brightest pixel which have
     /// the mean of the reference. It only widens the error, so that the rate of false alarms is a bound.
     pub(crate) fn compare(&self, ours: &Batches, label: &str) -> Agreement {
         let means = at_scales(&self.image);
@@ -146,7 +146,7 @@ impl Reference {
                     tests += 1;
                     let here = moments.variance().expect("several batches")[component]
                         / moments.count() as f64;
-                    let unseen = if mean == 0.0 {
+                    let unseen = if mean == 0.0 && self.correlated > 1.0 {
                         let samples = ours.samples * (all / means[scale].len()) as u64;
                         expected * brightest[component] / samples as f64
                     } else {

@@ -77,7 +77,7 @@ REFERENCES = {
         check_batches=32, check_spp=16)
        for number, name in enumerate((
            "textures", "sky", "rough_metals", "rough_glass", "plastics", "holes", "meshes",
-           "instances", "small_lights", "relief", "shapes", "lens", "parallel"))},
+           "instances", "small_lights", "relief", "shapes", "lens", "parallel", "clipped"))},
 }
 
 

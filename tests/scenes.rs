@@ -162,6 +162,11 @@ fn lens() {
     compare("lens");
 }
 
+#[test]
+fn clipped() {
+    compare("clipped");
+}
+
 /// A Gaussian with a standard deviation of half a pixel: one over the integral of its square is pi.
 #[test]
 fn parallel() {

@@ -7,15 +7,15 @@ mod near;
 
 use approx::assert_relative_eq;
 use core::f32::consts::{PI, TAU};
-use estimand::path::bsdf::Lambertian;
+use estimand::path::bsdf::{Dielectric, Lambertian, Mask, Material, Null, ThinDielectric};
 use estimand::path::filter::BoxFilter;
 use estimand::path::light::{AreaLights, Constant, NoEnvironment, NoLight};
 use estimand::path::sensor::Pinhole;
 use estimand::path::shape::{Cylinder, Disk, Flat, Mesh, Primitive, Shape, Sphere, cuboid};
-use estimand::path::texture::{Bitmap, Filter, Texture};
+use estimand::path::texture::{Bitmap, Filter, Texture, Uniform};
 use estimand::path::{Instances, Object, Paths, Ray, Scene, Segment, Surface, View};
 use estimand::points::{HashedOwen, PointSet, Sobol};
-use estimand::{Average, Sampler};
+use estimand::{Average, Estimator, Sampler};
 use glam::{Affine3A, Mat3A, Quat, Vec2, Vec3, Vec3A};
 
 #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
@@ -561,6 +561,51 @@ fn hidden_lights_light_but_are_not_seen() {
         assert_eq!(render(hiding, [0.0, 1.0, 2.0], target), 0.0);
     }
     assert_eq!(render(all, [0.0, 1.0, 2.0], [0.0, 1.9, 0.0]), 0.25);
+}
+
+/// Through holes and thin glass, straight on, nothing is seen of what is around; by a mirror, through real glass and scattered it is.
+#[test]
+fn what_is_around_is_hidden_behind_holes_and_thin_glass_too() {
+    fn seen(law: impl Into<Material>, paths: Paths) -> f64 {
+        let pane =
+            Flat::parallelogram([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]).unwrap();
+        let around = Constant::new([0.25; 3]).unwrap();
+        let pane = Object::new([pane], law.into());
+        let view: View<_, NoLight, _, _> = View {
+            scene: Scene::new(vec![pane], around).unwrap(),
+            sensor: Pinhole::look_at([1.0, 0.5, 2.0], [0.0; 3], [0.0, 1.0, 0.0], 0.1, 1.0).unwrap(),
+            filter: BoxFilter,
+            paths,
+        };
+        let points = Sobol::new(16).unwrap().scrambled(HashedOwen { seed: 1 });
+        let estimator = Average::new(points, 1 << 12);
+        let estimate = estimator.estimate(&view.pixel([0, 0], [1, 1]));
+        estimate.unwrap().mean.x / 0.25
+    }
+    let (all, hiding) = (Paths::default(), Paths::default().hiding_lights());
+    let grey = || Lambertian::new([0.5; 3]).unwrap().into();
+    let hole = || Mask::new(Uniform::from(0.25), grey());
+    let pane = || ThinDielectric::new(1.5, 1.0).unwrap();
+    let reflected = {
+        // Both sides, and what goes to and fro between them.
+        let cosine = 2.0 / 5.25_f64.sqrt();
+        let inner = (1.0 - (1.0 - cosine * cosine) / 2.25).sqrt();
+        let across = ((cosine - 1.5 * inner) / (cosine + 1.5 * inner)).powi(2);
+        let along = ((1.5 * cosine - inner) / (1.5 * cosine + inner)).powi(2);
+        let once = 0.5 * (across + along);
+        2.0 * once / (1.0 + once)
+    };
+    for (what, found, expected) in [
+        ("hole", seen(hole(), hiding), 0.25 * 0.5),
+        ("hole", seen(hole(), all), 0.25 * 0.5 + 0.75),
+        ("thin glass", seen(pane(), hiding), reflected),
+        ("thin glass", seen(pane(), all), 1.0),
+        ("nothing", seen(Null, hiding), 0.0),
+        ("nothing", seen(Null, all), 1.0),
+        ("glass", seen(Dielectric::new(1.5, 1.0).unwrap(), hiding), 1.0),
+    ] {
+        assert!((found - expected).abs() < 2e-3, "{what}: {found} for {expected}");
+    }
 }
 
 #[test]

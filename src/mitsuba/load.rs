@@ -18,7 +18,9 @@ use crate::path::light::{
     AreaLights, Background, Constant, Environment, Light, LightTree, NoEnvironment, NoLight,
     Surroundings,
 };
-use crate::path::sensor::{self, Camera, Orthographic, Pinhole, Sensor as _, ThinLens};
+use crate::path::sensor::{
+    self, Camera, Clipped, FarPlane, Orthographic, Pinhole, Sensor as _, ThinLens,
+};
 use crate::path::texture::{Texture, Uniform};
 use crate::path::{Instances, Object, Paths, Ray, Surfaces, View};
 use crate::points::{Independent, PointSet};
@@ -154,13 +156,17 @@ impl Plan<'_> {
     {
         let paths = self.paths()?;
         let refused = |e: Error| self.sensor.place.error(e);
-        let camera = self.camera().map_err(refused)?;
+        let projection = self.projection();
+        let camera = self.camera(&projection).map_err(refused)?;
+        let depth = self.sensor.far_clip - self.sensor.near_clip;
+        let far = FarPlane::new(&projection, depth).map_err(refused)?;
+        let cut = surfaces.are_cut_by(&far);
         let filter = AnyFilter::of(self.sensor.film.filter).map_err(refused)?;
         let place = &self.description.place;
         let scene = surfaces.scene::<L, E>(environment);
         let scene = scene.map_err(|e| place.error(e))?;
         Ok(match (camera, filter) {
-            (Camera::Pinhole(sensor), AnyFilter::Box(filter)) if !self.needs.camera => {
+            (Camera::Pinhole(sensor), AnyFilter::Box(filter)) if !self.needs.camera && !cut => {
                 Box::new(View {
                     scene,
                     sensor,
@@ -168,9 +174,9 @@ impl Plan<'_> {
                     paths,
                 })
             }
-            (sensor, filter) => Box::new(View {
+            (camera, filter) => Box::new(View {
                 scene,
-                sensor,
+                sensor: Clipped::new(camera, cut.then_some(far)),
                 filter,
                 paths,
             }),
@@ -179,7 +185,8 @@ impl Plan<'_> {
 
     /// Rays of the camera, all over the picture, without end.
     fn rays(&self) -> Result<impl Iterator<Item = Ray> + use<>, SceneError> {
-        let camera = self.camera().map_err(|e| self.sensor.place.error(e))?;
+        let camera = self.camera(&self.projection());
+        let camera = camera.map_err(|e| self.sensor.place.error(e))?;
         let points = Independent::new(0);
         Ok((0..).map(move |index| {
             let mut u = points.point(index);
@@ -188,10 +195,9 @@ impl Plan<'_> {
         }))
     }
 
-    fn camera(&self) -> Result<Camera, Error> {
-        let Sensor {
-            film, projection, ..
-        } = self.sensor;
+    /// How the film lies in front of the camera, but for the angle that it spans.
+    fn projection(&self) -> sensor::Projection {
+        let film = &self.sensor.film;
         let [width, height] = [film.width, film.height].map(f64::from);
         let [left, top] = [
             f64::from(film.crop.x) / width,
@@ -199,14 +205,18 @@ impl Plan<'_> {
         ];
         let right = f64::from(film.crop.x + film.crop.width) / width;
         let bottom = f64::from(film.crop.y + film.crop.height) / height;
-        let mut placed = sensor::Projection {
+        sensor::Projection {
             to_world: self.sensor.to_world,
             aspect: width / height,
             window: [[left, top], [right, bottom]],
             near: self.sensor.near_clip,
             ..sensor::Projection::default()
-        };
-        match *projection {
+        }
+    }
+
+    fn camera(&self, placed: &sensor::Projection) -> Result<Camera, Error> {
+        let mut placed = *placed;
+        match self.sensor.projection {
             Projection::Perspective {
                 fov,
                 principal_point_offset,

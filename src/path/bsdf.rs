@@ -144,3 +144,11 @@ pub struct Scattered {
     /// it is refracted.
     pub eta: f32,
 }
+
+impl Scattered {
+    /// Whether light passes as if there were no surface, that is seen from the direction `out`: through a hole, or through thin glass.
+    #[inline]
+    pub(in crate::path) fn is_straight(&self, out: Vec3A) -> bool {
+        self.density == f32::INFINITY && self.eta == 1.0 && self.direction.dot(out) < -1.0 + 1e-6
+    }
+}

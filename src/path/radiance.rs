@@ -57,7 +57,7 @@ impl Paths {
     }
 
     /// Leaves out of the picture what emits light, but not its light: the camera looks through shapes that shine, and sees
-    /// nothing where it would see what is around the scene.
+    /// nothing where it would see what is around the scene, be it through holes and thin glass.
     pub fn hiding_lights(mut self) -> Self {
         self.hides_lights = true;
         self
@@ -149,10 +149,12 @@ impl Paths {
         // The density with which the direction of the ray was drawn. The camera's is no choice.
         let mut density = f32::INFINITY;
         let mut eta = 1.0;
+        // Whether what is around would be seen directly, and is not to be.
+        let mut hidden = self.hides_lights;
         for segment in 1.. {
             let Some(vertex) = scene.meet(&ray) else {
                 let emission = scene.environment().emitted(ray.direction);
-                if segment > 1 || !self.hides_lights {
+                if !hidden {
                     radiance += throughput * emission.radiance * power(density, emission.density);
                 }
                 break;
@@ -186,6 +188,7 @@ impl Paths {
             let Some(next) = bsdf.sample(surface, out, u) else {
                 break;
             };
+            hidden = hidden && next.is_straight(out);
             throughput *= next.weight;
             eta *= next.eta;
             let carried = throughput.max_element() * (eta * eta);

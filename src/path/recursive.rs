@@ -6,6 +6,7 @@ use super::bsdf::Bsdf;
 use super::filter::Filter;
 use super::light::{Environment, Light};
 use super::radiance::power;
+use super::render::Start;
 use super::roulette::Rule;
 use super::sensor::Sensor;
 use super::{Pixel, Ray, Scene};
@@ -215,18 +216,8 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
     type Value = Vec3;
 
     fn evaluate<S: Sampler>(&self, u: &mut S) -> Vec3 {
-        let Pixel {
-            scene,
-            sensor,
-            filter,
-            position,
-            size,
-            ..
-        } = self.pixel;
-        let seen = filter.sample(position, size, u.next_2d());
-        let film = core::array::from_fn(|axis| seen.point[axis] / f64::from(size[axis]));
-        let ray = sensor.ray(film, u);
-        self.recursion.radiance(scene, ray, u) * seen.weight
+        let Start { ray, weight } = self.pixel.start(u);
+        self.recursion.radiance(self.pixel.scene, ray, u) * weight
     }
 
     fn dimensions(&self) -> u32 {

@@ -53,8 +53,12 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Pixel<'_, B, L, E,
     pub(in crate::path) fn start<S: Sampler>(&self, u: &mut S) -> Start {
         let seen = self.filter.sample(self.position, self.size, u.next_2d());
         let film = core::array::from_fn(|axis| seen.point[axis] / f64::from(self.size[axis]));
+        let mut ray = self.sensor.ray(film, u);
+        if let Some(far) = self.sensor.far_plane() {
+            ray = self.scene.past_far(ray, far);
+        }
         Start {
-            ray: self.sensor.ray(film, u),
+            ray,
             weight: seen.weight,
         }
     }

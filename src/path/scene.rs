@@ -19,6 +19,7 @@ use super::object::{Instances, Object};
 use super::packet::{Emitted, FlatLight, Law, Optics, Packet};
 use super::ray::{Ray, Surface};
 use super::segment::{End, Segment};
+use super::sensor::FarPlane;
 use super::{Detail, Shading};
 use crate::Error;
 
@@ -185,6 +186,16 @@ impl<B: Bsdf, L, E> Scene<B, L, E> {
 }
 
 impl<B, L, E> Scene<B, L, E> {
+    /// The same ray from behind what it meets first, if that is beyond the plane: then all else is too.
+    pub(in crate::path) fn past_far(&self, mut ray: Ray, far: &FarPlane) -> Ray {
+        while let Some(hit) = self.geometry.nearest(&ray)
+            && far.hides(hit.surface.point)
+        {
+            ray.origin = hit.surface.leave(ray.direction);
+        }
+        ray
+    }
+
     /// The shapes that emit light.
     #[inline]
     pub fn lights(&self) -> &L {

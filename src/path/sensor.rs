@@ -4,9 +4,10 @@
 //! |---|---|
 //! | [`Pinhole`], [`Orthographic`] | 0 |
 //! | [`ThinLens`] | 2 |
-//! | [`Camera`] | as the one it is |
+//! | [`Camera`], [`Clipped`] | as the one it is |
 
 mod camera;
+mod clipped;
 mod orthographic;
 mod pinhole;
 mod projection;
@@ -16,6 +17,7 @@ use super::Ray;
 use crate::Sampler;
 
 pub use camera::Camera;
+pub use clipped::{Clipped, FarPlane};
 pub use orthographic::Orthographic;
 pub use pinhole::Pinhole;
 pub use projection::Projection;
@@ -26,6 +28,11 @@ pub trait Sensor: Sync {
     /// The ray through a point of the film: `[0, 0]` is the upper left corner of the picture, `[1, 1]` the lower right
     /// one. Coordinates of a lens, where there is one, are drawn from `u`.
     fn ray<S: Sampler>(&self, film: [f64; 2], u: &mut S) -> Ray;
+
+    /// The plane beyond which shapes are not seen, if there is one. None unless implemented.
+    fn far_plane(&self) -> Option<&FarPlane> {
+        None
+    }
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ use crate::path::geometry::{Copied, FEW, Geometry};
 use crate::path::light::{Emitter, Environment, Light};
 use crate::path::object::{Instances, Object, Radiance};
 use crate::path::resolution::{check_object, check_scene};
+use crate::path::sensor::FarPlane;
 
 /// The surfaces of a scene.
 pub(crate) struct Surfaces<B> {
@@ -66,6 +67,12 @@ impl<B: Bsdf> Surfaces<B> {
             emitters: parts.emitters,
             lights_in_lanes,
         })
+    }
+
+    /// Whether any of them may be beyond a plane.
+    #[cfg(feature = "mitsuba")]
+    pub(crate) fn are_cut_by(&self, far: &FarPlane) -> bool {
+        far.cuts(self.geometry.bounds())
     }
 
     /// The scene of them in an environment.

@@ -235,10 +235,10 @@ class Chance:
         return f'<emitter type="{kind}">{content}{weight}</emitter>'
 
     def area(self, weight: str) -> str:
-        # Mitsuba 3.9.1 draws textured lamps as if they had no `to_uv`, and lamps with interpolated normals by these.
+        # Mitsuba 3.9.1 has the density of textured spheres wrong, and that of all that have a `to_uv`; interpolated normals are taken for true ones.
         textured = self.has(0.2)
         radiance = self.texture("radiance", moved=0) if textured else self.color("radiance", 1, 8)
-        kinds = ("rectangle", "sphere", "disk", "cylinder") if textured else ("rectangle", "sphere", "disk", "cylinder", "cube", "ply", "obj")
+        kinds = ("rectangle", "disk", "cylinder") if textured else ("rectangle", "sphere", "disk", "cylinder", "cube", "ply", "obj")
         kind = self.one(*kinds)
         file = {"ply": "ball.ply", "obj": "sheet.obj"}.get(kind)
         mesh = f'<string name="filename" value="{ASSETS}/{file}"/><boolean name="face_normals" value="true"/>' if file else ""
@@ -325,9 +325,9 @@ def ours(program: Path, options: list[str], file: Path, spp: int, batches: int) 
 
 
 def z(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Differences of means over batches, the first axis, over their standard errors; of rounding at the least."""
+    """Differences of means over batches, the first axis, over their standard errors, or a ten-thousandth of the picture if that is more."""
     variance = sum(runs.var(axis=0, ddof=1) / len(runs) for runs in (one, other))
-    floor = np.square(1e-6 * np.abs(other.mean(axis=0))) + 1e-16
+    floor = np.square(1e-4 * other.mean()) + 1e-16
     return np.abs(one.mean(axis=0) - other.mean(axis=0)) / np.sqrt(np.maximum(variance, floor))
 
 
@@ -358,7 +358,7 @@ def main() -> int:
             except RuntimeError as error:
                 verdict, differs = f"refused: {error}", True
             else:
-                off = pictures.mean(axis=(0, 1, 2)) / reference.mean(axis=(0, 1, 2)) - 1
+                off = pictures.mean(axis=(0, 1, 2)) / np.maximum(reference.mean(axis=(0, 1, 2)), 1e-12) - 1
                 worst = z(tiles(pictures), tiles(reference)).ravel()
                 found = (z(pictures.mean(axis=(1, 2)), reference.mean(axis=(1, 2))).max(), worst.max(), np.quantile(worst, 0.9))
                 differs = not all(value <= limit for value, limit in zip(found, LIMITS))

@@ -117,7 +117,7 @@ mod tests {
         };
         let around = Constant::new([1.0; 3]).unwrap();
         let scene = Scene::new(vec![ball(4.0, 4.0), ball(8.0, 8.0)], around).unwrap();
-        let view: View<_, AreaLights, _, _> = View {
+        let view: View<Lambertian, AreaLights, _, _> = View {
             scene,
             sensor,
             filter: BoxFilter,

@@ -156,8 +156,9 @@ class Chance:
             laws["twosided"] = lambda: (inner(sides=False, clear=False)
                                         + self.perhaps(0.3, lambda: inner(sides=False, clear=False)))
         if depth < 2:
-            # Mitsuba 3.9.1 has the density of a mixture with single directions wrong.
-            laws["blendbsdf"] = lambda: self.weight("weight") + inner(smooth=False) + inner(smooth=False)
+            # Mitsuba 3.9.1 has mixtures with single directions wrong, and those seen from where one of both draws nothing.
+            opaque = lambda: inner(sides=False, smooth=False, clear=False)
+            laws["blendbsdf"] = lambda: self.weight("weight") + opaque() + opaque()
             if clear and self.has_surroundings:
                 laws["mask"] = lambda: self.weight("opacity") + inner()
             if not self.in_bumps:

@@ -2,7 +2,7 @@
 
     pip install -r requirements.txt
     cargo build --release --all-features --example render
-    python3 by_chance.py FIRST [LAST] [--spp N] [--batches B] [--keep FOLDER] [-- OPTIONS OF render]
+    python3 by_chance.py FIRST [LAST] [--spp N] [--batches B] [--keep FOLDER] [--options=OPTIONS]
 
 A number gives a scene: a camera, a film, an integrator, a floor, one to six bodies of any shape under any material, and lamps, with what
 else the reader of scene files knows. Both programs render it several times with other seeds; from the spread come the standard errors. `z`
@@ -345,7 +345,7 @@ def main() -> int:
     parser.add_argument("--batches", type=int, default=8)
     parser.add_argument("--program", type=Path, default=PROGRAM)
     parser.add_argument("--keep", type=Path, help="a folder for the scenes that differ")
-    parser.add_argument("options", nargs="*", help="options of the program render, after --")
+    parser.add_argument("--options", type=str.split, default=[], help="of the program render, as --options='--reuse 4'")
     arguments = parser.parse_args()
     differing = 0
     for number in range(arguments.first, arguments.last or arguments.first + 1):

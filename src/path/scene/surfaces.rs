@@ -12,7 +12,6 @@ use crate::path::geometry::{Copied, FEW, Geometry};
 use crate::path::light::{Emitter, Environment, Light};
 use crate::path::object::{Instances, Object, Radiance};
 use crate::path::resolution::{check_object, check_scene};
-use crate::path::sensor::FarPlane;
 
 /// The surfaces of a scene.
 pub(crate) struct Surfaces<B> {
@@ -71,7 +70,7 @@ impl<B: Bsdf> Surfaces<B> {
 
     /// Whether any of them may be beyond a plane.
     #[cfg(feature = "mitsuba")]
-    pub(crate) fn are_cut_by(&self, far: &FarPlane) -> bool {
+    pub(crate) fn are_cut_by(&self, far: &crate::path::sensor::FarPlane) -> bool {
         far.cuts(self.geometry.bounds())
     }
 

@@ -156,8 +156,8 @@ class Chance:
             laws["twosided"] = lambda: (inner(sides=False, clear=False)
                                         + self.perhaps(0.3, lambda: inner(sides=False, clear=False)))
         if depth < 2:
-            # Mitsuba 3.9.1 has mixtures with single directions wrong, and those seen from where one of both draws nothing.
-            opaque = lambda: inner(sides=False, smooth=False, clear=False)
+            # Mitsuba 3.9.1 has mixtures wrong with single directions, and where one of both laws may draw nothing.
+            opaque = lambda: self.bsdf(2, sides=False, smooth=False, clear=False)
             laws["blendbsdf"] = lambda: self.weight("weight") + opaque() + opaque()
             if clear and self.has_surroundings:
                 laws["mask"] = lambda: self.weight("opacity") + inner()
@@ -326,9 +326,9 @@ def ours(program: Path, options: list[str], file: Path, spp: int, batches: int) 
 
 
 def z(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Differences of means over batches, the first axis, over their standard errors, or a ten-thousandth of the picture if that is more."""
+    """Differences of means over batches, the first axis, over their standard errors, or 3e-4 of the picture if that is more."""
     variance = sum(runs.var(axis=0, ddof=1) / len(runs) for runs in (one, other))
-    floor = np.square(1e-4 * other.mean()) + 1e-16
+    floor = np.square(3e-4 * other.mean()) + 1e-16
     return np.abs(one.mean(axis=0) - other.mean(axis=0)) / np.sqrt(np.maximum(variance, floor))
 
 

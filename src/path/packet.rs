@@ -27,7 +27,8 @@ use super::light::{AreaLights, Emission, Illumination, Sky, Surroundings};
 use super::render::Start;
 use super::reuse::{Group, Traces};
 use super::shape::Primitive;
-use crate::Sampler;
+use crate::points::PointSet;
+use crate::{Cursor, Sampler};
 
 pub(in crate::path) use optics::{Emitted, FlatLight, Law, Optics};
 pub(in crate::path) use reuse::Keeper;
@@ -73,7 +74,7 @@ pub(in crate::path) struct Packet {
 }
 
 /// What packets ask of a view, most of it one lane at a time.
-pub(in crate::path) trait Single<U> {
+pub(in crate::path) trait Single {
     /// What the law at a point does for a pair of directions.
     fn evaluate(&self, at: &Hit, out: Vec3A, into: Vec3A) -> Scattering;
 
@@ -81,13 +82,13 @@ pub(in crate::path) trait Single<U> {
     fn lambertian(&self, at: &Hit) -> Option<Lambertian>;
 
     /// A direction that the law at a point draws.
-    fn sample(&self, at: &Hit, out: Vec3A, u: &mut U) -> Option<Scattered>;
+    fn sample(&self, at: &Hit, out: Vec3A, u: &mut dyn Sampler) -> Option<Scattered>;
 
     /// Light that a point may get from the lights of the scene.
-    fn lamp(&self, at: &Hit, u: &mut U) -> Option<Illumination>;
+    fn lamp(&self, at: &Hit, u: &mut dyn Sampler) -> Option<Illumination>;
 
     /// Light that it may get from what is around.
-    fn around(&self, at: &Hit, u: &mut U) -> Option<Illumination>;
+    fn around(&self, at: &Hit, u: &mut dyn Sampler) -> Option<Illumination>;
 
     /// What a point of a light emits towards another point.
     fn emitted(&self, at: &Hit, from: Vec3A) -> Emission;
@@ -188,13 +189,38 @@ impl Packet {
     /// What [`Paths::radiance`] gives for each of the points, times the weight that its start has; `starts` tells where their paths
     /// begin. Paths that are to be reused are kept by `keeper`, and have no values yet.
     ///
-    /// The view is behind a pointer, and it is not inlined, so that the loop is compiled for every kind of sampler, but not of
-    /// view.
+    /// View and points are behind pointers, and it is not inlined, so that the loop is compiled once, with this crate.
     #[inline(never)]
-    pub(in crate::path) fn radiance<U: Sampler>(
+    pub(in crate::path) fn radiance(
         &self,
         paths: Paths,
-        single: &dyn Single<U>,
+        single: &dyn Single,
+        starts: &[Start],
+        points: &mut [Cursor<'_, dyn PointSet + '_>],
+        values: &mut [Vec3],
+        keeper: Option<Keeper<'_>>,
+    ) {
+        self.follow(paths, single, starts, points, values, keeper);
+    }
+
+    /// The same for points of any kind, each coordinate of which is asked for through a pointer.
+    #[inline(never)]
+    pub(in crate::path) fn radiance_of_any(
+        &self,
+        paths: Paths,
+        single: &dyn Single,
+        starts: &[Start],
+        points: &mut [&mut dyn Sampler],
+        values: &mut [Vec3],
+    ) {
+        self.follow(paths, single, starts, points, values, None);
+    }
+
+    #[inline(always)]
+    fn follow<U: Sampler>(
+        &self,
+        paths: Paths,
+        single: &dyn Single,
         starts: &[Start],
         points: &mut [U],
         values: &mut [Vec3],
@@ -219,7 +245,7 @@ impl Packet {
     fn walk<U: Sampler, const PLAIN: bool>(
         &self,
         paths: Paths,
-        single: &dyn Single<U>,
+        single: &dyn Single,
         starts: &[Start],
         points: &mut [U],
         values: &mut [Vec3],

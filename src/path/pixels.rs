@@ -10,7 +10,7 @@ use super::reuse::{Group, Part, Pixels, Run, Tracer, Traces};
 use super::sensor::Sensor;
 use crate::points::{PointSet, Skipped};
 use crate::recorder::Recorder;
-use crate::{Average, Estimator, Integrand, NonFinite, Outcome};
+use crate::{Average, Cursor, Estimator, Integrand, NonFinite, Outcome};
 use glam::Vec3;
 
 pub(in crate::path) use ahead::Ahead;
@@ -25,7 +25,7 @@ use {
     crate::room::with_room,
     crate::tallied::Tallied,
     crate::tally::Tally,
-    crate::{Cursor, Estimate, Value},
+    crate::{Estimate, Value},
     glam::DVec3,
 };
 
@@ -40,7 +40,18 @@ pub struct Share<P> {
     pub count: u64,
 }
 
+/// The same of points of any kind. What follows from here on is compiled once for all of them.
+pub(in crate::path) type Given<'a> = Share<&'a dyn PointSet>;
+
 impl<P: PointSet> Share<P> {
+    pub(in crate::path) fn given(&self) -> Given<'_> {
+        Share {
+            position: self.position,
+            points: &self.points,
+            count: self.count,
+        }
+    }
+
     /// The first points, and the others.
     fn cut(&self, first: u64) -> [Share<Skipped<&P>>; 2] {
         let part = |skipped, count| Share {
@@ -94,13 +105,18 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         shares: &[Share<P>],
         rule: NonFinite,
     ) -> Vec<Outcome<Vec3>> {
-        if let Some(parts) = self.reused(size, shares, &|_| 0, rule) {
+        let shares: Vec<_> = shares.iter().map(Share::given).collect();
+        self.means(size, &shares, rule)
+    }
+
+    fn means(&self, size: [u32; 2], shares: &[Given<'_>], rule: NonFinite) -> Vec<Outcome<Vec3>> {
+        if let Some(parts) = self.reused(size, shares, shares.iter().map(|_| 0), rule) {
             let shares = shares.iter().zip(parts);
             let mean =
-                |(share, [_, all]): (&Share<P>, [Part; 2])| all.outcome(&share.average(rule));
+                |(share, [_, all]): (&Given<'_>, [Part; 2])| all.outcome(&share.average(rule));
             return shares.map(mean).collect();
         }
-        self.each(size, shares, |share, values| {
+        self.each(size, shares, |_, share, values| {
             self.mean(size, share, values, rule)
         })
     }
@@ -138,18 +154,30 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         cut: impl Fn(&Share<P>) -> u64,
         rule: NonFinite,
     ) -> Vec<[Outcome<Vec3>; 2]> {
-        for share in shares {
-            let (cut, count) = (cut(share), share.count);
+        let cuts: Vec<_> = shares.iter().map(cut).collect();
+        let shares: Vec<_> = shares.iter().map(Share::given).collect();
+        self.means_in_two(size, &shares, &cuts, rule)
+    }
+
+    fn means_in_two(
+        &self,
+        size: [u32; 2],
+        shares: &[Given<'_>],
+        cuts: &[u64],
+        rule: NonFinite,
+    ) -> Vec<[Outcome<Vec3>; 2]> {
+        for (share, &cut) in shares.iter().zip(cuts) {
+            let count = share.count;
             let whole = share
                 .points
                 .size()
                 .is_none_or(|size| size == count || count == 0);
             assert!(cut <= count && whole, "{count} points cut at {cut}");
         }
-        if let Some(parts) = self.reused(size, shares, &cut, rule) {
-            let shares = shares.iter().zip(parts);
-            let means = |(share, [a, b]): (&Share<P>, [Part; 2])| {
-                let [first, others] = share.cut(cut(share));
+        if let Some(parts) = self.reused(size, shares, cuts.iter().copied(), rule) {
+            let shares = shares.iter().zip(cuts).zip(parts);
+            let means = |((share, &cut), [a, b]): ((&Given<'_>, &u64), [Part; 2])| {
+                let [first, others] = share.cut(cut);
                 [
                     a.outcome(&first.average(rule)),
                     b.outcome(&others.average(rule)),
@@ -157,8 +185,8 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
             };
             return shares.map(means).collect();
         }
-        self.each(size, shares, |share, values| {
-            let cut = cut(share);
+        self.each(size, shares, |number, share, values| {
+            let cut = cuts[number];
             let parts = share.cut(cut);
             let values = values.map(|values| {
                 let (first, others) = values.split_at(usize::try_from(cut).unwrap_or(usize::MAX));
@@ -166,37 +194,37 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
             });
             core::array::from_fn(|part| {
                 let values = values.map(|values| values[part]);
-                self.mean(size, &parts[part], values, rule)
+                self.mean(size, &parts[part].given(), values, rule)
             })
         })
     }
 
     /// What both parts of each share give where paths are reused.
-    fn reused<P: PointSet>(
+    fn reused(
         &self,
         size: [u32; 2],
-        shares: &[Share<P>],
-        cut: &dyn Fn(&Share<P>) -> u64,
+        shares: &[Given<'_>],
+        cuts: impl Iterator<Item = u64>,
         rule: NonFinite,
     ) -> Option<Vec<[Part; 2]>> {
         let ahead = self.ahead(size);
         let pixels = Pixels {
             reused_by: self.paths.reused_by,
             rule,
-            follow: &|runs: &[Run<'_, P>], groups, traces| {
+            follow: &|runs: &[Run<'_>], groups, traces| {
                 self.trace(size, runs, groups, traces, &ahead);
             },
             coordinates: &|share, index| {
                 let mut coordinates = Vec::new();
                 let mut recorder = Recorder {
-                    inner: share.points.point(index),
+                    inner: Cursor::new(share.points, index),
                     coordinates: &mut coordinates,
                 };
                 self.pixel(share.position, size).evaluate(&mut recorder);
                 coordinates
             },
         };
-        (self.paths.reused_by > 1).then(|| pixels.parts(shares, cut))
+        (self.paths.reused_by > 1).then(|| pixels.parts(shares, cuts))
     }
 
     /// Before any path is followed.
@@ -205,17 +233,17 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     }
 
     /// Follows the paths of some runs, and shares the light of some groups.
-    pub(in crate::path) fn trace<P: PointSet>(
+    pub(in crate::path) fn trace(
         &self,
         size: [u32; 2],
-        runs: &[Run<'_, P>],
+        runs: &[Run<'_>],
         groups: &[Group],
         traces: &mut Traces,
         ahead: &Ahead,
     ) {
         #[cfg(feature = "simd")]
         if let Some(packet) = self.pixel([0; 2], size).packet() {
-            let slots = |run: &Run<'_, P>| run.slot..run.slot + run.length();
+            let slots = |run: &Run<'_>| run.slot..run.slot + run.length();
             let of: Vec<_> = runs.iter().flat_map(slots).collect();
             let keeper = Keeper {
                 traces,
@@ -230,10 +258,10 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
     }
 
     /// The same, one path after the other.
-    pub(in crate::path) fn trace_singly<P: PointSet>(
+    pub(in crate::path) fn trace_singly(
         &self,
         size: [u32; 2],
-        runs: &[Run<'_, P>],
+        runs: &[Run<'_>],
         groups: &[Group],
         traces: &mut Traces,
     ) {
@@ -245,7 +273,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
                     roulette: &self.paths.roulette,
                     slot,
                 };
-                let u = &mut run.share.points.point(index);
+                let u = &mut Cursor::new(run.share.points, index);
                 let (radiance, weight) = pixel.follow(u, &mut tracer);
                 tracer.end(radiance, weight);
             }
@@ -255,12 +283,12 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         }
     }
 
-    /// What `tell` makes of each share and the values at its points, if it has few.
-    fn each<P: PointSet, T>(
+    /// What `tell` makes of each share, its number and the values at its points, if it has few.
+    fn each<T>(
         &self,
         size: [u32; 2],
-        shares: &[Share<P>],
-        tell: impl Fn(&Share<P>, Option<&[Vec3]>) -> T,
+        shares: &[Given<'_>],
+        tell: impl Fn(usize, &Given<'_>, Option<&[Vec3]>) -> T,
     ) -> Vec<T> {
         #[cfg(feature = "simd")]
         if let Some(packet) = self.pixel([0; 2], size).packet() {
@@ -268,14 +296,17 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         }
         #[cfg(not(feature = "simd"))]
         let _ = size;
-        shares.iter().map(|share| tell(share, None)).collect()
+        let shares = shares.iter().enumerate();
+        shares
+            .map(|(number, share)| tell(number, share, None))
+            .collect()
     }
 
     /// The mean over a share, of which the values may be there.
-    fn mean<P: PointSet>(
+    fn mean(
         &self,
         size: [u32; 2],
-        share: &Share<P>,
+        share: &Given<'_>,
         values: Option<&[Vec3]>,
         rule: NonFinite,
     ) -> Outcome<Vec3> {
@@ -289,12 +320,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
         self.alone(size, share, rule)
     }
 
-    fn alone<P: PointSet>(
-        &self,
-        size: [u32; 2],
-        share: &Share<P>,
-        rule: NonFinite,
-    ) -> Outcome<Vec3> {
+    fn alone(&self, size: [u32; 2], share: &Given<'_>, rule: NonFinite) -> Outcome<Vec3> {
         share
             .average(rule)
             .estimate(&self.pixel(share.position, size))
@@ -304,19 +330,19 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
 #[cfg(feature = "simd")]
 impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F> {
     /// [`each`](Self::each) in lanes.
-    fn together<P: PointSet, T>(
+    fn together<T>(
         &self,
         packet: &Packet,
         size: [u32; 2],
-        mut shares: &[Share<P>],
-        tell: impl Fn(&Share<P>, Option<&[Vec3]>) -> T,
+        mut shares: &[Given<'_>],
+        tell: impl Fn(usize, &Given<'_>, Option<&[Vec3]>) -> T,
     ) -> Vec<T> {
         let mut outcomes = Vec::with_capacity(shares.len());
         let mut values = Vec::new();
         let ahead = self.ahead(size);
         while !shares.is_empty() {
             let mut points = 0;
-            let mut more = |share: &Share<P>| {
+            let mut more = |share: &Given<'_>| {
                 let enough = points >= TOGETHER;
                 points += few(share);
                 !enough
@@ -329,30 +355,31 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
                 .collect();
             self.follow(packet, size, &runs, &ahead, &mut values, None);
             let mut given = &values[..];
-            outcomes.extend(batch.iter().map(|share| {
+            for share in batch {
                 let (own, others) = given.split_at(few(share));
                 given = others;
-                tell(share, (!own.is_empty()).then_some(own))
-            }));
+                let own = (!own.is_empty()).then_some(own);
+                outcomes.push(tell(outcomes.len(), share, own));
+            }
             shares = rest;
         }
         outcomes
     }
 
     /// The values at some points of shares, or what is to be kept of their paths.
-    fn follow<P: PointSet>(
+    fn follow(
         &self,
         packet: &Packet,
         size: [u32; 2],
-        runs: &[Run<'_, P>],
+        runs: &[Run<'_>],
         ahead: &Ahead,
         values: &mut Vec<Vec3>,
         keeper: Option<Keeper<'_>>,
     ) {
         // Any pixel will do for all that is asked but where paths begin.
         let any = self.pixel([0; 2], size);
-        let width = |run: &Run<'_, P>| ahead.width().min(run.share.points.dimensions());
-        let rows = |run: &Run<'_, P>| run.length() * width(run) as usize;
+        let width = |run: &Run<'_>| ahead.width().min(run.share.points.dimensions());
+        let rows = |run: &Run<'_>| run.length() * width(run) as usize;
         let length = runs.iter().map(rows).sum();
         with_room(length, |room| {
             let mut free = &mut *room;
@@ -371,7 +398,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
                 for index in run.indices.clone() {
                     let (row, others) = left.split_at(width);
                     left = others;
-                    let mut sampler = Cursor::with_prefix(&run.share.points, index, row);
+                    let mut sampler = Cursor::with_prefix(run.share.points, index, row);
                     starts.push(pixel.start(&mut sampler));
                     samplers.push(sampler);
                 }
@@ -385,7 +412,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> View<B, L, E, C, F
 }
 
 #[cfg(feature = "simd")]
-impl<P: PointSet> Share<P> {
+impl Given<'_> {
     /// The estimate from the values at its points; `None` without any, and if plain arithmetic does not do.
     fn of_values(&self, values: &[Vec3], rule: NonFinite) -> Option<Estimate<DVec3>> {
         let mut block = Block::EMPTY;
@@ -398,7 +425,7 @@ impl<P: PointSet> Share<P> {
 
 /// How many points the share has, if they are to be followed with those of others; 0 if not.
 #[cfg(feature = "simd")]
-fn few<P: PointSet>(share: &Share<P>) -> usize {
+fn few(share: &Given<'_>) -> usize {
     let count = whole(&share.points, share.count);
     usize::try_from(count)
         .ok()

@@ -73,9 +73,7 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Pixel<'_, B, L, E,
 }
 
 #[cfg(feature = "simd")]
-impl<U: Sampler, B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Single<U>
-    for Pixel<'_, B, L, E, C, F>
-{
+impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Single for Pixel<'_, B, L, E, C, F> {
     fn evaluate(&self, at: &Hit, out: Vec3A, into: Vec3A) -> Scattering {
         let vertex = self.scene.vertex(*at);
         vertex.bsdf.evaluate(&vertex.surface, out, into)
@@ -86,17 +84,17 @@ impl<U: Sampler, B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Single
         vertex.bsdf.lambertian_at(&vertex.surface)
     }
 
-    fn sample(&self, at: &Hit, out: Vec3A, u: &mut U) -> Option<Scattered> {
+    fn sample(&self, at: &Hit, out: Vec3A, mut u: &mut dyn Sampler) -> Option<Scattered> {
         let vertex = self.scene.vertex(*at);
-        vertex.bsdf.sample(&vertex.surface, out, u)
+        vertex.bsdf.sample(&vertex.surface, out, &mut u)
     }
 
-    fn lamp(&self, at: &Hit, u: &mut U) -> Option<Illumination> {
-        self.scene.lights().sample(&at.surface, u)
+    fn lamp(&self, at: &Hit, mut u: &mut dyn Sampler) -> Option<Illumination> {
+        self.scene.lights().sample(&at.surface, &mut u)
     }
 
-    fn around(&self, at: &Hit, u: &mut U) -> Option<Illumination> {
-        self.scene.environment().sample(&at.surface, u)
+    fn around(&self, at: &Hit, mut u: &mut dyn Sampler) -> Option<Illumination> {
+        self.scene.environment().sample(&at.surface, &mut u)
     }
 
     fn emitted(&self, at: &Hit, from: Vec3A) -> Emission {
@@ -151,7 +149,10 @@ impl<B: Bsdf, L: Light, E: Environment, C: Sensor, F: Filter> Integrand
         #[cfg(feature = "simd")]
         if let Some(packet) = self.packet() {
             let starts: Vec<_> = samplers.iter_mut().map(|u| self.start(u)).collect();
-            return packet.radiance(self.paths, self, &starts, samplers, values, None);
+            let mut points: Vec<_> = (samplers.iter_mut())
+                .map(|sampler| sampler as &mut dyn Sampler)
+                .collect();
+            return packet.radiance_of_any(self.paths, self, &starts, &mut points, values);
         }
         for (u, value) in samplers.iter_mut().zip(values) {
             *value = Integrand::evaluate(self, u);

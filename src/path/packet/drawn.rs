@@ -36,8 +36,8 @@ impl Weights {
 
     /// What comes from all around against the directions of the active lanes.
     #[inline(never)]
-    pub(super) fn background<U>(
-        single: &dyn Single<U>,
+    pub(super) fn background(
+        single: &dyn Single,
         directions: &[Row<f32>; 3],
         active: &Row<f32>,
     ) -> Self {
@@ -259,9 +259,9 @@ impl Hits<'_> {
 
     /// What the lights at the active lanes emit towards `origin`.
     #[inline(never)]
-    pub(super) fn emitted<U>(
+    pub(super) fn emitted(
         &self,
-        single: &dyn Single<U>,
+        single: &dyn Single,
         origin: &[Row<f32>; 3],
         active: &Row<f32>,
     ) -> Weights {
@@ -275,7 +275,7 @@ impl Hits<'_> {
     /// The albedos of the ideally diffuse laws at the active lanes, and 1 where the inner side scatters as the outer one does, 0 where it is
     /// black.
     #[inline(never)]
-    pub(super) fn lambertian<U>(&self, single: &dyn Single<U>, active: &Row<f32>) -> Weights {
+    pub(super) fn lambertian(&self, single: &dyn Single, active: &Row<f32>) -> Weights {
         Weights::of(active, |lane| match single.lambertian(&self.hit(lane)) {
             Some(law) => (law.albedo, f32::from(u8::from(law.has_inside()))),
             None => {
@@ -290,9 +290,9 @@ impl Hits<'_> {
 
     /// What the laws of the active lanes do for light from some directions.
     #[inline(never)]
-    pub(super) fn evaluate<U>(
+    pub(super) fn evaluate(
         &self,
-        single: &dyn Single<U>,
+        single: &dyn Single,
         into: &[Row<f32>; 3],
         active: &Row<f32>,
     ) -> Weights {

@@ -57,15 +57,13 @@ fn agree<B: Bsdf, L: Light, E: Environment>(view: &View<B, L, E, Pinhole>) {
 /// So must what pixels give whose paths are reused.
 fn agree_where_reused<B: Bsdf, L: Light, E: Environment>(view: &View<B, L, E, Pinhole>) {
     let size = [7, 5];
-    let shares = shares();
     let singly = Pixels {
         reused_by: 4,
         rule: NonFinite::Reject,
         follow: &|runs, groups, traces| view.trace_singly(size, runs, groups, traces),
         coordinates: &|_, _| Vec::new(),
     };
-    let singly = singly.parts(&shares, &|share| share.count / 3);
-    assert_eq!(parts_of_pixels(view, 4), singly);
+    assert_eq!(parts_of_pixels(view, 4), parts(&singly));
 }
 
 /// What some pixels give whose paths are reused by so many.
@@ -80,18 +78,20 @@ fn parts_of_pixels<B: Bsdf, L: Light, E: Environment>(
         follow: &|runs, groups, traces| view.trace([7, 5], runs, groups, traces, &ahead),
         coordinates: &|_, _| Vec::new(),
     };
-    pixels.parts(&shares(), &|share| share.count / 3)
+    parts(&pixels)
 }
 
-fn shares() -> Vec<Share<Rescrambled>> {
-    (0..14)
+fn parts(pixels: &Pixels<'_>) -> Vec<[Part; 2]> {
+    let shares: Vec<_> = (0..14)
         .zip([17, 0, 40, 150, 16, 33, 64].into_iter().cycle())
         .map(|(place, count)| Share {
             position: [place % 7, 1 + place / 7],
             points: Rescrambled::new(4, place.into()).unwrap(),
             count,
         })
-        .collect()
+        .collect();
+    let given: Vec<_> = shares.iter().map(Share::given).collect();
+    pixels.parts(&given, shares.iter().map(|share| share.count / 3))
 }
 
 #[test]

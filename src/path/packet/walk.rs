@@ -31,7 +31,7 @@ use state::{Path, State};
 pub(super) struct Walk<'a, U, const PLAIN: bool> {
     pub(super) packet: &'a Packet,
     pub(super) paths: Paths,
-    pub(super) single: &'a dyn Single<U>,
+    pub(super) single: &'a dyn Single,
     pub(super) sky: Option<&'a Sky>,
     pub(super) sources: Option<&'a Surroundings>,
     pub(super) starts: &'a [Start],

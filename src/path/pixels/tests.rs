@@ -36,7 +36,7 @@ fn each_pixel_is_as_it_is_alone() {
         let together = view.averages(size, &shares, NonFinite::Fail);
         assert_eq!(together.len(), shares.len());
         for (share, mut outcome) in shares.iter().zip(together) {
-            let mut alone = view.alone(size, share, NonFinite::Fail);
+            let mut alone = view.alone(size, &share.given(), NonFinite::Fail);
             assert_eq!(alone.is_err(), share.count == 0);
             for outcome in [&mut outcome, &mut alone].into_iter().flatten() {
                 outcome.seconds = 0.0;
@@ -93,7 +93,7 @@ fn two_parts_are_as_they_are_alone() {
                         points,
                         count,
                     };
-                    let mut alone = view.alone(size, &part, NonFinite::Fail);
+                    let mut alone = view.alone(size, &part.given(), NonFinite::Fail);
                     assert_eq!(alone.is_err(), count == 0);
                     for outcome in [&mut outcome, &mut alone].into_iter().flatten() {
                         outcome.seconds = 0.0;
@@ -193,7 +193,7 @@ fn what_plain_arithmetic_does_not_do_is_as_it_is_alone() {
         }
         for rule in [NonFinite::Reject, NonFinite::Fail] {
             for (share, outcome) in shares.iter().zip(view.averages(size, &shares, rule)) {
-                let alone = view.alone(size, share, rule);
+                let alone = view.alone(size, &share.given(), rule);
                 match (outcome, alone) {
                     (Ok(outcome), Ok(alone)) => {
                         let expected = if share.position[0] == 2 { 16 } else { 0 };

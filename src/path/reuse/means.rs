@@ -8,15 +8,15 @@ use super::{SPREAD, Traces, WIDTH};
 use crate::block::Block;
 use crate::estimators::whole;
 use crate::hash::hash;
-use crate::path::Share;
+use crate::path::pixels::Given;
 use crate::points::PointSet;
 use crate::tallied::{Tallied, Tallies, finish};
 use crate::tally::{Open, Tally};
 use crate::{Average, Error, NonFinite, Outcome, Value};
 
 /// Some points of a share, whose paths are kept in slots from `slot` on.
-pub(in crate::path) struct Run<'a, P> {
-    pub(in crate::path) share: &'a Share<P>,
+pub(in crate::path) struct Run<'a> {
+    pub(in crate::path) share: &'a Given<'a>,
     pub(in crate::path) indices: Range<u64>,
     pub(in crate::path) slot: usize,
     /// Which of all shares.
@@ -24,9 +24,9 @@ pub(in crate::path) struct Run<'a, P> {
 }
 
 #[cfg(feature = "simd")]
-impl<'a, P> Run<'a, P> {
+impl<'a> Run<'a> {
     /// The first points of a share, of which nothing is kept.
-    pub(in crate::path) fn of(share: &'a Share<P>, count: usize) -> Self {
+    pub(in crate::path) fn of(share: &'a Given<'a>, count: usize) -> Self {
         Self {
             share,
             indices: 0..count as u64,
@@ -64,16 +64,16 @@ impl Group {
 pub(in crate::path) const TOGETHER: usize = 512;
 
 /// A share among those that may go together.
-struct Member<'a, P> {
-    share: &'a Share<P>,
+struct Member<'a> {
+    share: &'a Given<'a>,
     number: usize,
     count: u64,
     /// Where it is in a random order of the pixels.
     place: u64,
 }
 
-impl<'a, P: PointSet> Member<'a, P> {
-    fn new((number, share): (usize, &'a Share<P>)) -> Self {
+impl<'a> Member<'a> {
+    fn new((number, share): (usize, &'a Given<'a>)) -> Self {
         let [x, y] = share.position;
         Self {
             share,
@@ -85,14 +85,14 @@ impl<'a, P: PointSet> Member<'a, P> {
 }
 
 /// Paths to be followed together.
-struct Batch<'a, P> {
-    runs: Vec<Run<'a, P>>,
+struct Batch<'a> {
+    runs: Vec<Run<'a>>,
     groups: Vec<Group>,
     slots: usize,
     paths: usize,
 }
 
-impl<'a, P> Batch<'a, P> {
+impl<'a> Batch<'a> {
     const EMPTY: Self = Self {
         runs: Vec::new(),
         groups: Vec::new(),
@@ -101,7 +101,7 @@ impl<'a, P> Batch<'a, P> {
     };
 
     /// Adds the rounds of a group of shares.
-    fn add(&mut self, members: &[Member<'a, P>], rounds: Range<u64>) {
+    fn add(&mut self, members: &[Member<'a>], rounds: Range<u64>) {
         let room = length(&rounds).next_multiple_of(WIDTH);
         let group = Group {
             pixels: members.len(),
@@ -124,30 +124,29 @@ impl<'a, P> Batch<'a, P> {
 }
 
 /// Follows the paths of some runs and shares the light of some groups.
-type Follow<'a, P> = &'a dyn Fn(&[Run<'_, P>], &[Group], &mut Traces);
+type Follow<'a> = &'a dyn Fn(&[Run<'_>], &[Group], &mut Traces);
 
 /// What the path of a pixel at a point reads.
-type Coordinates<'a, P> = &'a dyn Fn(&Share<P>, u64) -> Vec<f64>;
+type Coordinates<'a> = &'a dyn Fn(&Given<'_>, u64) -> Vec<f64>;
 
 /// How the pixels of a picture are followed.
-pub(in crate::path) struct Pixels<'a, P> {
+pub(in crate::path) struct Pixels<'a> {
     /// How many use a path.
     pub(in crate::path) reused_by: u32,
     pub(in crate::path) rule: NonFinite,
-    pub(in crate::path) follow: Follow<'a, P>,
-    pub(in crate::path) coordinates: Coordinates<'a, P>,
+    pub(in crate::path) follow: Follow<'a>,
+    pub(in crate::path) coordinates: Coordinates<'a>,
 }
 
-impl<P: PointSet> Pixels<'_, P> {
-    /// What the first points of each share give, `cut` of them, and the others. Those go together that follow one another, in one row and its
+impl Pixels<'_> {
+    /// What the first points of each share give, as many as its cut says, and the others. Those go together that follow one another, in one row and its
     /// columns, and have the most points in common, drawn at random: pixels beside one another that err alike would be seen as stripes.
     pub(in crate::path) fn parts(
         &self,
-        shares: &[Share<P>],
-        cut: &dyn Fn(&Share<P>) -> u64,
+        shares: &[Given<'_>],
+        cuts: impl Iterator<Item = u64>,
     ) -> Vec<[Part; 2]> {
-        let parts = shares.iter().map(|share| [0, cut(share)].map(Part::new));
-        let mut parts: Vec<_> = parts.collect();
+        let mut parts: Vec<_> = cuts.map(|cut| [0, cut].map(Part::new)).collect();
         let mut traces = Traces::default();
         let mut batch = Batch::EMPTY;
         let mut number = 0;
@@ -155,7 +154,7 @@ impl<P: PointSet> Pixels<'_, P> {
         let columns = self.reused_by * SPREAD;
         // As many at once as keep the lanes busy.
         let at_once = TOGETHER.div_ceil(pixels).next_multiple_of(WIDTH) as u64;
-        let cell = |share: &Share<P>| [share.position[0] / columns, share.position[1]];
+        let cell = |share: &Given<'_>| [share.position[0] / columns, share.position[1]];
         for cell in shares.chunk_by(|a, b| cell(a) == cell(b)) {
             let mut members: Vec<_> = (number..).zip(cell).map(Member::new).collect();
             number += cell.len();
@@ -177,7 +176,7 @@ impl<P: PointSet> Pixels<'_, P> {
         parts
     }
 
-    fn run(&self, batch: &mut Batch<'_, P>, traces: &mut Traces, parts: &mut [[Part; 2]]) {
+    fn run(&self, batch: &mut Batch<'_>, traces: &mut Traces, parts: &mut [[Part; 2]]) {
         traces.clear(batch.slots);
         (self.follow)(&batch.runs, &batch.groups, traces);
         let mut values = Vec::new();
@@ -264,22 +263,22 @@ mod tests {
     use crate::hash::unit_f32;
     use crate::points::Independent;
 
-    fn share([x, y]: [u32; 2], count: u64) -> Share<Independent> {
-        Share {
+    fn share([x, y]: [u32; 2], count: u64) -> Given<'static> {
+        Given {
             position: [x, y],
-            points: Independent::new(0),
+            points: const { &Independent::new(0) },
             count,
         }
     }
 
     /// Paths whose values are those of their pixel and index.
     fn parts(
-        shares: &[Share<Independent>],
+        shares: &[Given<'_>],
         rule: NonFinite,
-        cut: &dyn Fn(&Share<Independent>) -> u64,
+        cut: &dyn Fn(&Given<'_>) -> u64,
         value: impl Fn(u32, u64) -> Vec3,
     ) -> Vec<[Part; 2]> {
-        let follow: Follow<'_, _> = &|runs, groups, traces| {
+        let follow: Follow<'_> = &|runs, groups, traces| {
             let ends = |&group: &Group| (0..group.pixels).map(move |pixel| group.slot(pixel, 0));
             let expected: Vec<_> = groups.iter().flat_map(ends).collect();
             let slots: Vec<_> = runs.iter().map(|run| run.slot).collect();
@@ -304,7 +303,7 @@ mod tests {
             follow,
             coordinates: &|share, index| vec![share.position[0].into(), index as f64],
         };
-        pixels.parts(shares, cut)
+        pixels.parts(shares, shares.iter().map(cut))
     }
 
     fn random(x: u32, index: u64) -> Vec3 {
@@ -316,7 +315,7 @@ mod tests {
         let counts = [0, 1, 16, 17, 127, 128, 129, 1000, 5];
         let shares: Vec<_> = (2..).zip(counts).map(|(x, n)| share([x, 3], n)).collect();
         for cut in [0, 1, 16, 130, 2000] {
-            let cut = |share: &Share<_>| share.count.min(cut);
+            let cut = |share: &Given<'_>| share.count.min(cut);
             let found = parts(&shares, NonFinite::Fail, &cut, random);
             for (share, parts) in shares.iter().zip(found) {
                 let ranges = [0..cut(share), cut(share)..share.count];
@@ -340,7 +339,7 @@ mod tests {
     }
 
     /// The columns of the pixels of each group.
-    fn groups(shares: &[Share<Independent>]) -> Vec<Vec<u32>> {
+    fn groups(shares: &[Given<'_>]) -> Vec<Vec<u32>> {
         let found = RefCell::new(Vec::new());
         let pixels = Pixels {
             reused_by: 8,
@@ -355,7 +354,7 @@ mod tests {
             },
             coordinates: &|_, _| Vec::new(),
         };
-        let _ = pixels.parts(shares, &|_| 0);
+        let _ = pixels.parts(shares, shares.iter().map(|_| 0));
         found.into_inner()
     }
 

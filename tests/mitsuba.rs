@@ -424,6 +424,11 @@ fn techniques_must_find_the_light() {
             <shape type="sphere"><bsdf type="null"/></shape>"#,
             "<integrator type=\"volpath\">: without media",
         ),
+        (
+            r#"<integrator type="volpath"><boolean name="hide_emitters" value="true"/></integrator>
+            <shape type="sphere"><bsdf type="thindielectric"/></shape>"#,
+            "<integrator type=\"volpath\">: without media",
+        ),
     ] {
         let message = message(seen(scene));
         assert!(message.contains(expected), "{message}");

@@ -7,7 +7,7 @@ mod near;
 
 use approx::assert_relative_eq;
 use core::f32::consts::{PI, TAU};
-use estimand::path::bsdf::{Dielectric, Lambertian, Mask, Material, Null, ThinDielectric};
+use estimand::path::bsdf::{Dielectric, Lambertian, Mask, Material, Mirror, Null, ThinDielectric};
 use estimand::path::filter::BoxFilter;
 use estimand::path::light::{AreaLights, Constant, NoEnvironment, NoLight};
 use estimand::path::sensor::Pinhole;
@@ -566,14 +566,14 @@ fn hidden_lights_light_but_are_not_seen() {
 /// Through holes and thin glass, straight on, nothing is seen of what is around; by a mirror, through real glass and scattered it is.
 #[test]
 fn what_is_around_is_hidden_behind_holes_and_thin_glass_too() {
-    fn seen(law: impl Into<Material>, paths: Paths) -> f64 {
+    fn seen_from(eye: [f32; 3], law: impl Into<Material>, paths: Paths) -> f64 {
         let pane =
             Flat::parallelogram([-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]).unwrap();
         let around = Constant::new([0.25; 3]).unwrap();
         let pane = Object::new([pane], law);
         let view: View<Material, NoLight, _, _> = View {
             scene: Scene::new(vec![pane], around).unwrap(),
-            sensor: Pinhole::look_at([1.0, 0.5, 2.0], [0.0; 3], [0.0, 1.0, 0.0], 0.1, 1.0).unwrap(),
+            sensor: Pinhole::look_at(eye, [0.0; 3], [0.0, 1.0, 0.0], 0.01, 1.0).unwrap(),
             filter: BoxFilter,
             paths,
         };
@@ -581,6 +581,9 @@ fn what_is_around_is_hidden_behind_holes_and_thin_glass_too() {
         let estimator = Average::new(points, 1 << 12);
         let estimate = estimator.estimate(&view.pixel([0, 0], [1, 1]));
         estimate.unwrap().mean.x / 0.25
+    }
+    fn seen(law: impl Into<Material>, paths: Paths) -> f64 {
+        seen_from([1.0, 0.5, 2.0], law, paths)
     }
     let (all, hiding) = (Paths::default(), Paths::default().hiding_lights());
     let grey = || Lambertian::new([0.5; 3]).unwrap().into();
@@ -600,6 +603,12 @@ fn what_is_around_is_hidden_behind_holes_and_thin_glass_too() {
         ("hole", seen(hole(), all), 0.25 * 0.5 + 0.75),
         ("thin glass", seen(pane(), hiding), reflected),
         ("thin glass", seen(pane(), all), 1.0),
+        // It is mirrored nearly straight on.
+        (
+            "mirror along which one looks",
+            seen_from([0.9, 0.0, 3e-4], Mirror::new([1.0; 3]).unwrap(), hiding),
+            1.0,
+        ),
         ("nothing", seen(Null, hiding), 0.0),
         ("nothing", seen(Null, all), 1.0),
         (

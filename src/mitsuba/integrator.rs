@@ -16,6 +16,8 @@ pub struct Integrator {
     pub rr_depth: u32,
     /// Whether the camera sees through what emits light.
     pub hide_emitters: bool,
+    /// Whether it then does not see what is around through surfaces that light passes straight through either: it does in `direct`.
+    pub hides_behind_passages: bool,
     /// How light is found.
     pub techniques: Techniques,
     /// Whether surfaces count that light passes straight through: not in `volpath`, which is the same as `path` otherwise where
@@ -41,6 +43,7 @@ impl Default for Integrator {
             max_depth: None,
             rr_depth: 5,
             hide_emitters: false,
+            hides_behind_passages: true,
             techniques: Techniques::Both,
             counts_passages: true,
         }
@@ -62,12 +65,19 @@ impl Integrator {
             )
         };
         let passes = |shape: &Shape| {
-            let is = |bsdf: &Bsdf| matches!(bsdf, Bsdf::Null | Bsdf::Mask { .. });
+            let is = |bsdf: &Bsdf| {
+                matches!(
+                    bsdf,
+                    Bsdf::Null | Bsdf::Mask { .. } | Bsdf::ThinDielectric(_)
+                )
+            };
             shape.bsdf.any(&is)
         };
-        if !self.counts_passages && self.max_depth.is_some() && shapes.iter().any(passes) {
+        let heeded = self.max_depth.is_some() || self.hide_emitters;
+        if !self.counts_passages && heeded && shapes.iter().any(passes) {
             return Err(place.error(
-                "without media volpath is path, but for passages through null and mask, which it does not count; use path",
+                "without media volpath is path, but for passages through null, mask and thindielectric, which it neither counts nor \
+                 takes for surfaces that emitters are seen by; use path",
             ));
         }
         match self.techniques {
@@ -120,6 +130,7 @@ pub(super) fn describe(mut query: Query<'_>) -> Result<Integrator, SceneError> {
             Integrator {
                 max_depth: Some(2),
                 hide_emitters,
+                hides_behind_passages: false,
                 techniques,
                 ..Integrator::default()
             }

@@ -243,7 +243,11 @@ impl Plan<'_> {
         } = self.description;
         let mut paths = Paths::default().roulette_from(integrator.rr_depth);
         if integrator.hide_emitters {
-            paths = paths.hiding_lights();
+            paths = if integrator.hides_behind_passages {
+                paths.hiding_lights()
+            } else {
+                paths.hiding_lights_in_front()
+            };
         }
         match integrator.max_depth {
             None => Ok(paths),

@@ -146,9 +146,13 @@ pub struct Scattered {
 }
 
 impl Scattered {
-    /// Whether light passes as if there were no surface, that is seen from the direction `out`: through a hole, or through thin glass.
+    /// Whether light passes as if there were no surface, of the given normal, that is seen from the direction `out`: through a hole, or through
+    /// thin glass. What is mirrored at a grazing angle is nearly as straight, but stays on its side.
     #[inline]
-    pub(in crate::path) fn is_straight(&self, out: Vec3A) -> bool {
-        self.density == f32::INFINITY && self.eta == 1.0 && self.direction.dot(out) < -1.0 + 1e-6
+    pub(in crate::path) fn is_straight(&self, normal: Vec3A, out: Vec3A) -> bool {
+        self.density == f32::INFINITY
+            && self.eta == 1.0
+            && self.direction.dot(out) < -1.0 + 1e-6
+            && (normal.dot(self.direction) < 0.0) != (normal.dot(out) < 0.0)
     }
 }

@@ -18,6 +18,8 @@ pub struct Paths {
     pub(in crate::path) longest: u32,
     pub(in crate::path) roulette: Rule,
     pub(in crate::path) hides_lights: bool,
+    /// Whether what is around is hidden through holes and thin glass too.
+    pub(in crate::path) hides_behind_passages: bool,
     pub(in crate::path) reused_by: u32,
 }
 
@@ -27,6 +29,7 @@ impl Default for Paths {
             longest: u32::MAX,
             roulette: Rule::of_throughput(5),
             hides_lights: false,
+            hides_behind_passages: false,
             reused_by: 1,
         }
     }
@@ -56,10 +59,19 @@ impl Paths {
         self
     }
 
-    /// Leaves out of the picture what emits light, but not its light: the camera looks through shapes that shine, and sees
-    /// nothing where it would see what is around the scene, be it through holes and thin glass.
+    /// Leaves out of the picture what emits light, but not its light: the camera looks through shapes that shine, where it sees them directly, and
+    /// sees nothing where it would see what is around the scene, be it through holes and thin glass. Shapes that shine are seen through these.
     pub fn hiding_lights(mut self) -> Self {
         self.hides_lights = true;
+        self.hides_behind_passages = true;
+        self
+    }
+
+    /// The same, but for what is around the scene where it is seen through holes and thin glass, as Mitsuba's `direct` has it.
+    #[cfg(feature = "mitsuba")]
+    pub(crate) fn hiding_lights_in_front(mut self) -> Self {
+        self.hides_lights = true;
+        self.hides_behind_passages = false;
         self
     }
 
@@ -188,7 +200,7 @@ impl Paths {
             let Some(next) = bsdf.sample(surface, out, u) else {
                 break;
             };
-            hidden = hidden && next.is_straight(out);
+            hidden = hidden && self.hides_behind_passages && next.is_straight(surface.normal, out);
             throughput *= next.weight;
             eta *= next.eta;
             let carried = throughput.max_element() * (eta * eta);

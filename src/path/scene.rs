@@ -186,12 +186,15 @@ impl<B: Bsdf, L, E> Scene<B, L, E> {
 }
 
 impl<B, L, E> Scene<B, L, E> {
-    /// The same ray from behind what it meets first, if that is beyond the plane: then all else is too.
+    /// The same ray from behind all shapes, if what it meets first is beyond the plane: then all else is too.
     pub(in crate::path) fn past_far(&self, mut ray: Ray, far: &FarPlane) -> Ray {
-        while let Some(hit) = self.geometry.nearest(&ray)
+        if let Some(hit) = self.geometry.nearest(&ray)
             && far.hides(hit.surface.point)
         {
-            ray.origin = hit.surface.leave(ray.direction);
+            let [low, high] = self.geometry.bounds();
+            // Far out of the ball around their box, whatever rounding does.
+            let past = 2.0 * (0.5 * (low + high) - ray.origin).length() + (high - low).length();
+            ray.origin += ray.direction * past;
         }
         ray
     }

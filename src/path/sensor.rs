@@ -29,7 +29,8 @@ pub trait Sensor: Sync {
     /// one. Coordinates of a lens, where there is one, are drawn from `u`.
     fn ray<S: Sampler>(&self, film: [f64; 2], u: &mut S) -> Ray;
 
-    /// The plane beyond which shapes are not seen, if there is one. None unless implemented.
+    /// The plane beyond which shapes are not seen, if there is one: it is [`Pixel`](super::Pixel), and all that goes by pixels, that
+    /// begins paths by it, not whoever follows [rays](Self::ray) of his own. Sensors made of others pass theirs on. None unless implemented.
     fn far_plane(&self) -> Option<&FarPlane> {
         None
     }

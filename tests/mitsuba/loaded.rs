@@ -376,3 +376,19 @@ fn meshes_that_shine_keep_their_texture_coordinates() {
         rectangle.mean
     );
 }
+
+/// What is around a pane that light passes straight through: with lights hidden, Mitsuba's `path` has 0 there, its `direct` 1 (Mitsuba 3.9.1, `scalar_rgb`).
+#[test]
+fn direct_light_is_hidden_in_front_alone() {
+    let scene = |integrator: &str, bsdf: &str| {
+        format!(
+            r#"<integrator type="{integrator}"><boolean name="hide_emitters" value="true"/></integrator>
+            <shape type="rectangle">{TO_WALL}<bsdf type="{bsdf}"/></shape><emitter type="constant"/>"#
+        )
+    };
+    assert_eq!(even(&scene("path", "null")), DVec3::ZERO);
+    assert_eq!(even(&scene("direct", "null")), DVec3::ONE);
+    assert_eq!(even(&scene("direct", "thindielectric")), DVec3::ONE);
+    let nothing = r#"<integrator type="direct"><boolean name="hide_emitters" value="true"/></integrator><emitter type="constant"/>"#;
+    assert_eq!(even(nothing), DVec3::ZERO);
+}

@@ -3,6 +3,7 @@
 use super::*;
 use crate::path::filter::{BoxFilter, Filtered};
 use crate::path::scenes;
+use crate::path::sensor::{Clipped, FarPlane, Projection};
 use crate::points::{BlueNoise, Hammersley, Independent, Rescrambled, pixel};
 
 /// Numbers of points that end within and at batches, that are none, and that are more than are followed together.
@@ -48,6 +49,44 @@ fn each_pixel_is_as_it_is_alone() {
         view.averages(size, &[] as &[Share<Independent>], NonFinite::Fail)
             .is_empty()
     );
+}
+
+/// The back wall of the Cornell box is cut off: five columns of nine see nothing else, above the blocks.
+#[test]
+fn nothing_is_seen_beyond_a_far_plane() {
+    let View {
+        scene,
+        sensor,
+        filter,
+        paths,
+    } = scenes::cornell_box();
+    let from_the_ground = Projection::default();
+    let far = FarPlane::new(&from_the_ground, 555.0).unwrap();
+    let mut view = View {
+        scene,
+        sensor: Clipped::new(sensor, Some(far)),
+        filter,
+        paths,
+    };
+    let size = [9, 9];
+    let row: Vec<_> = (0..9)
+        .map(|x| Share {
+            position: [x, 2],
+            points: Rescrambled::new(4, x.into()).unwrap(),
+            count: 256,
+        })
+        .collect();
+    for reused_by in [1, 4] {
+        view.paths = view.paths.reused_by(reused_by).unwrap();
+        assert!(reused_by > 1 || view.pixel([0; 2], size).packet().is_some());
+        let means = view.averages(size, &row, NonFinite::Fail);
+        for (share, mean) in row.iter().zip(means) {
+            let (x, mean) = (share.position[0], mean.unwrap().mean);
+            let alone = view.alone(size, &share.given(), NonFinite::Fail);
+            assert!(reused_by > 1 || mean == alone.unwrap().mean);
+            assert_eq!(mean == DVec3::ZERO, (2..7).contains(&x), "{x}: {mean}");
+        }
+    }
 }
 
 #[test]

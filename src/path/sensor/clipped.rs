@@ -6,9 +6,11 @@ use super::{Projection, Sensor};
 use crate::path::Ray;
 use crate::{Error, Sampler};
 
-/// A camera that sees no shape beyond a plane; what is around the scene is seen in their place. They shine all the same, and are seen in mirrors.
+/// A camera that meets no shape beyond a plane; what is around the scene is seen in their place. They shine all the same, and are seen in mirrors,
+/// through holes and glass, and where [lights are hidden](crate::path::Paths::hiding_lights) behind these: only what the first ray of a path meets is heeded,
+/// as in Mitsuba.
 ///
-/// The first ray of a path is followed twice.
+/// That ray is followed twice.
 ///
 /// ```
 /// use estimand::path::sensor::{Clipped, FarPlane, Pinhole, Projection};
@@ -27,28 +29,34 @@ pub struct Clipped<C> {
 /// A plane, and that nothing is seen beyond it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FarPlane {
-    axis: Vec3A,
+    normal: Vec3A,
     end: f32,
 }
 
 impl FarPlane {
-    /// The plane `depth` units of the scene behind the near one of a projection, which rays begin at.
+    /// The plane that a projection has `depth` units of the scene, along its axis, behind its near one, which rays begin at and it is parallel to.
     ///
     /// # Errors
     ///
-    /// [`Error::Refused`] for a depth that is not positive, and for a matrix that has no axis.
+    /// [`Error::Refused`] for a depth that is not positive, for a near distance that is negative or not finite, and for a matrix that is not finite or cannot be
+    /// inverted.
     pub fn new(projection: &Projection, depth: f64) -> Result<Self, Error> {
-        let axis = projection.to_world.transform_vector3(DVec3::Z);
+        projection.check_near()?;
+        projection.check_placing()?;
+        if !(depth > 0.0) {
+            let what = "distance of the far plane from the near one";
+            return Err(Error::refused(what, "positive", depth));
+        }
+        let vector = |axis| projection.to_world.transform_vector3(axis);
+        let axis = vector(DVec3::Z);
         let near = projection.origin() + axis * projection.near;
         let axis = axis.normalize();
-        if !(depth > 0.0 && axis.is_finite()) {
-            let what = "distance of the far plane from the near one";
-            return Err(Error::refused(what, "positive, along an axis", depth));
-        }
+        let normal = vector(DVec3::X).normalize().cross(vector(DVec3::Y));
+        let normal = normal.normalize() * normal.dot(axis).signum();
         #[expect(clippy::cast_possible_truncation, reason = "rounds to f32")]
-        let end = (axis.dot(near) + depth) as f32;
+        let end = (normal.dot(near) + normal.dot(axis) * depth) as f32;
         Ok(Self {
-            axis: axis.as_vec3a(),
+            normal: normal.as_vec3a(),
             end,
         })
     }
@@ -56,18 +64,19 @@ impl FarPlane {
     /// Whether a point is beyond it.
     #[inline]
     pub fn hides(&self, point: Vec3A) -> bool {
-        self.axis.dot(point) > self.end
+        self.normal.dot(point) > self.end
     }
 
     /// Whether any point of a box is beyond it.
     #[cfg(feature = "mitsuba")]
     pub(crate) fn cuts(&self, [low, high]: [Vec3A; 2]) -> bool {
-        self.hides(Vec3A::select(self.axis.cmpgt(Vec3A::ZERO), high, low))
+        self.hides(Vec3A::select(self.normal.cmpgt(Vec3A::ZERO), high, low))
     }
 }
 
 impl<C> Clipped<C> {
-    /// What `camera` sees before the plane; everything without one, for programs that do not know before they read a file.
+    /// What `camera` sees before the plane; everything without one, for programs that do not know before they read a file. Camera and plane must be of one
+    /// [`Projection`]: all rays go towards the plane.
     pub fn new(camera: C, far: Option<FarPlane>) -> Self {
         Self { camera, far }
     }
@@ -89,14 +98,14 @@ impl<C: Sensor> Sensor for Clipped<C> {
 mod tests {
     use glam::DMat4;
 
-    use super::super::{Orthographic, Pinhole};
+    use super::super::{Orthographic, Pinhole, ThinLens};
     use super::*;
     use crate::Integrand;
     use crate::path::bsdf::Lambertian;
     use crate::path::filter::BoxFilter;
     use crate::path::light::{AreaLights, Constant};
     use crate::path::shape::Sphere;
-    use crate::path::{Object, Paths, Scene, View};
+    use crate::path::{Direct, Ending, Object, Paths, Recursive, Scene, View};
 
     struct Centre;
 
@@ -106,24 +115,35 @@ mod tests {
         }
     }
 
-    /// Two balls that shine in front of one another, from z = 4 and 8 on, in light from all around.
-    fn seen<C: Sensor>(sensor: C, paths: Paths) -> f32 {
-        let ball = |z: f32, radiance: f32| {
-            let sphere = Sphere::new([0.0, 0.0, z + 1.0], 1.0).unwrap();
-            let black = Lambertian::new([0.0; 3]).unwrap();
-            Object::new([sphere], black)
-                .emitting([radiance; 3])
-                .unwrap()
-        };
+    fn ball(z: f32, albedo: f32) -> Object<Lambertian> {
+        let sphere = Sphere::new([0.0, 0.0, z + 1.0], 1.0).unwrap();
+        Object::new([sphere], Lambertian::new([albedo; 3]).unwrap())
+    }
+
+    fn view<C: Sensor>(
+        balls: Vec<Object<Lambertian>>,
+        sensor: C,
+        paths: Paths,
+    ) -> View<Lambertian, AreaLights, Constant, C> {
         let around = Constant::new([1.0; 3]).unwrap();
-        let scene = Scene::new(vec![ball(4.0, 4.0), ball(8.0, 8.0)], around).unwrap();
-        let view: View<Lambertian, AreaLights, _, _> = View {
-            scene,
+        View {
+            scene: Scene::new(balls, around).unwrap(),
             sensor,
             filter: BoxFilter,
             paths,
-        };
-        view.pixel([0, 0], [1, 1]).evaluate(&mut Centre).x
+        }
+    }
+
+    /// Two balls that shine in front of one another, from z = 4 and 8 on, in light from all around.
+    fn seen<C: Sensor>(sensor: C) -> f32 {
+        let lamp = |z: f32| ball(z, 0.0).emitting([z; 3]).unwrap();
+        let view = view(vec![lamp(4.0), lamp(8.0)], sensor, Paths::default());
+        let pixel = view.pixel([0, 0], [1, 1]);
+        let radiance = pixel.evaluate(&mut Centre).x;
+        let recursion = Recursive::new(1, Ending::Depth(1), Direct::Chance).unwrap();
+        let recursive = recursion.pixel(pixel).evaluate(&mut Centre).x;
+        assert_eq!(recursive, radiance);
+        radiance
     }
 
     fn clipped<C: Sensor>(camera: C, projection: &Projection, depth: f64) -> Clipped<C> {
@@ -147,12 +167,59 @@ mod tests {
             let projection = Projection { near, ..projection };
             let pinhole = Pinhole::new(&projection).unwrap();
             let camera = clipped(pinhole, &projection, depth);
-            assert_eq!(seen(camera, Paths::default()), radiance, "{near} {depth}");
+            assert_eq!(seen(camera), radiance, "{near} {depth}");
+            let lens = ThinLens::new(&projection, 1e-3, 5.0).unwrap();
+            let lens = clipped(lens, &projection, depth);
+            assert_eq!(seen(lens), radiance, "{near} {depth}");
         }
-        assert_eq!(seen(Clipped::new(pinhole, None), Paths::default()), 4.0);
-        let hiding = Paths::default().hiding_lights();
-        let camera = clipped(pinhole, &projection, 2.9);
-        assert_eq!(seen(camera, hiding), 0.0);
+        assert_eq!(seen(Clipped::new(pinhole, None)), 4.0);
+    }
+
+    #[test]
+    fn what_is_around_is_hidden_behind_the_plane_too() {
+        let projection = Projection::default();
+        let pinhole = Pinhole::new(&projection).unwrap();
+        let far = |depth| FarPlane::new(&projection, depth).ok();
+        let seen = |far: Option<FarPlane>, paths| {
+            let view = view(vec![ball(4.0, 0.5)], Clipped::new(pinhole, far), paths);
+            view.pixel([0, 0], [1, 1]).evaluate(&mut Centre).x
+        };
+        let (all, hiding) = (Paths::default(), Paths::default().hiding_lights());
+        assert_eq!(seen(far(3.9), all), 1.0);
+        assert_eq!(seen(far(3.9), hiding), 0.0);
+        assert!(seen(far(4.1), hiding) > 0.1);
+        assert_eq!(seen(far(4.1), hiding), seen(None, all));
+    }
+
+    #[test]
+    fn however_many_shapes_are_beyond_none_is_seen() {
+        let pinhole = Pinhole::new(&Projection::default()).unwrap();
+        let balls = (4_u8..40)
+            .map(|z| ball(f32::from(z) * 1e3, 0.5).emitting([2.0; 3]).unwrap())
+            .collect();
+        let camera = clipped(pinhole, &Projection::default(), 100.0);
+        let view = view(balls, camera, Paths::default());
+        assert_eq!(view.pixel([0, 0], [1, 1]).evaluate(&mut Centre).x, 1.0);
+    }
+
+    #[test]
+    fn the_plane_is_parallel_to_the_film() {
+        // Upwards the film comes nearer; rays go along z.
+        let sheared = Projection {
+            to_world: DMat4::from_cols_array_2d(&[
+                [-2.0, 0.0, 0.0, 0.0],
+                [0.0, 1.0, -1.0, 0.0],
+                [0.0, 0.0, 3.0, 0.0],
+                [0.0, 0.0, 0.0, 1.0],
+            ]),
+            near: 2.0,
+            ..Projection::default()
+        };
+        let far = FarPlane::new(&sheared, 4.0).unwrap();
+        for (x, y, end) in [(0.0, 0.0, 10.0), (7.0, 0.0, 10.0), (-3.0, 2.0, 8.0)] {
+            let [before, beyond] = [-0.01, 0.01].map(|d| Vec3A::new(x, y, end + d));
+            assert!(!far.hides(before) && far.hides(beyond), "{x} {y}");
+        }
     }
 
     #[test]
@@ -166,7 +233,7 @@ mod tests {
         let camera = Orthographic::new(&projection).unwrap();
         for (depth, radiance) in [(1.9, 1.0), (2.1, 4.0)] {
             let camera = clipped(camera, &projection, depth);
-            assert_eq!(seen(camera, Paths::default()), radiance, "{depth}");
+            assert_eq!(seen(camera), radiance, "{depth}");
         }
     }
 
@@ -178,15 +245,26 @@ mod tests {
     }
 
     #[test]
-    fn depths_that_are_none_are_refused() {
+    fn planes_that_are_none_are_refused() {
         for depth in [0.0, -1.0, f64::NAN] {
             assert!(FarPlane::new(&Projection::default(), depth).is_err());
         }
-        let flat = Projection {
-            to_world: DMat4::from_scale(DVec3::new(1.0, 1.0, 0.0)),
-            ..Projection::default()
-        };
-        assert!(FarPlane::new(&flat, 1.0).is_err());
+        for scale in [DVec3::new(1.0, 1.0, 0.0), DVec3::new(1.0, f64::NAN, 1.0)] {
+            let projection = Projection {
+                to_world: DMat4::from_scale(scale),
+                ..Projection::default()
+            };
+            let error = FarPlane::new(&projection, 1.0).unwrap_err();
+            assert!(error.to_string().contains("camera"), "{error}");
+        }
+        for near in [-1.0, f64::NAN, f64::INFINITY] {
+            let projection = Projection {
+                near,
+                ..Projection::default()
+            };
+            let error = FarPlane::new(&projection, 1.0).unwrap_err();
+            assert!(error.to_string().contains("near"), "{error}");
+        }
         assert!(FarPlane::new(&Projection::default(), f64::INFINITY).is_ok());
     }
 }

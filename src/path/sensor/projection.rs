@@ -68,13 +68,7 @@ impl Projection {
         if !(self.aspect > 0.0 && self.aspect.is_finite()) {
             return Err(Error::refused("aspect", "positive and finite", self.aspect));
         }
-        if !(self.near >= 0.0 && self.near.is_finite()) {
-            return Err(Error::refused(
-                "near distance",
-                "zero or more and finite",
-                self.near,
-            ));
-        }
+        self.check_near()?;
         let [low, high] = self.window;
         if !((0..2).all(|axis| low[axis] < high[axis])
             && low.iter().chain(&high).all(|x| x.is_finite()))
@@ -85,14 +79,7 @@ impl Projection {
                 format_args!("{low:?} to {high:?}"),
             ));
         }
-        let determinant = self.to_world.determinant();
-        if !(self.to_world.is_finite() && determinant != 0.0 && determinant.is_finite()) {
-            return Err(Error::refused(
-                "placing of the camera",
-                "a finite matrix that can be inverted",
-                self.to_world,
-            ));
-        }
+        self.check_placing()?;
         let extent = [half_width, half_width / self.aspect];
         let start: [f64; 2] = core::array::from_fn(|axis| {
             (1.0 - 2.0 * (low[axis] + self.principal_point_offset[axis])) * extent[axis]
@@ -127,6 +114,29 @@ impl Projection {
             }
         }
         self.plane((0.5 * self.width_degrees).to_radians().tan())
+    }
+
+    pub(super) fn check_near(&self) -> Result<(), Error> {
+        if !(self.near >= 0.0 && self.near.is_finite()) {
+            return Err(Error::refused(
+                "near distance",
+                "zero or more and finite",
+                self.near,
+            ));
+        }
+        Ok(())
+    }
+
+    pub(super) fn check_placing(&self) -> Result<(), Error> {
+        let determinant = self.to_world.determinant();
+        if !(self.to_world.is_finite() && determinant != 0.0 && determinant.is_finite()) {
+            return Err(Error::refused(
+                "placing of the camera",
+                "a finite matrix that can be inverted",
+                self.to_world,
+            ));
+        }
+        Ok(())
     }
 
     /// The origin of the camera in the scene.

@@ -10,7 +10,7 @@ files. Both programs render it several times with other seeds; from the spread c
 is the largest difference over its error, of mean colours, of tiles of 8 x 8 pixels, and of the tile that nine tenths of the others are
 below. Errors are known from a few batches, and bright paths are rare: a tile alone that is far off means little, an `off` of a few percent with a
 `z` of ten much. What is known to differ (README.md) is not made. The exit code is 0 if all agree, 1 if a scene differs or is refused, 2 if
-something is missing; Ctrl-C ends with what was found so far.
+something is missing; Ctrl-C ends with what was found so far, and with 130.
 """
 
 from __future__ import annotations
@@ -42,7 +42,8 @@ class Chance:
         self.has_surroundings = False
         self.has_masks = False
         self.has_round_bodies = False
-        self.has_areas = False
+        self.areas = 0
+        self.has_round_areas = False
         # Mitsuba 3.9.1 has bumps on mirrored bodies black.
         self.mirrors = self.has(0.5)
         self.in_bumps = False
@@ -233,7 +234,7 @@ class Chance:
         aim = f'<lookat origin="{self.numbers((-2, 2), (2.5, 4), (0, 3))}" target="0, 0.5, 0" up="0, 0, 1"/>'
         aim = f'<transform name="to_world">{aim}</transform>'
         if kind == "area":
-            self.has_areas = True
+            self.areas += 1
             return self.area(weight)
         if kind == "point":
             content = self.point("position", 2, 4) + self.color("intensity", 2, 20)
@@ -253,6 +254,7 @@ class Chance:
         radiance = self.texture("radiance", moved=0) if textured else self.color("radiance", 1, 8)
         kinds = ("rectangle", "disk", "cylinder") if textured else ("rectangle", "sphere", "disk", "cylinder", "cube", "ply", "obj")
         kind = self.one(*kinds)
+        self.has_round_areas |= kind in ("sphere", "disk", "cylinder")
         file = {"ply": "ball.ply", "obj": "sheet.obj"}.get(kind)
         mesh = f'<string name="filename" value="{ASSETS}/{file}"/><boolean name="face_normals" value="true"/>' if file else ""
         x, y, z = self.number(-2, 2), self.number(2.6, 4), self.number(-1, 2)
@@ -298,7 +300,8 @@ class Chance:
 
     def integrator(self) -> str:
         # With lights hidden, Mitsuba 3.9.1 loses what is gathered at a mask that the path goes on through, and misplaces what is round behind lamps.
-        hidden = "" if self.has_masks or self.has_areas and self.has_round_bodies else self.flag("hide_emitters", 0.3)
+        round_behind = self.areas > 0 and self.has_round_bodies or self.areas > 1 and self.has_round_areas
+        hidden = "" if self.has_masks or round_behind else self.flag("hide_emitters", 0.3)
         if self.has(0.1):
             return f'<integrator type="direct">{hidden}</integrator>'
         depths = self.perhaps(0.9, lambda: f'<integer name="max_depth" value="{self.one("-1", "1", "2", "3", "4", "5", "8", "12")}"/>')

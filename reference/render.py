@@ -83,6 +83,9 @@ REFERENCES = {
 
 def load_mitsuba(variant):
     """Imports Mitsuba in the given variant."""
+    if np is None:
+        raise Failure(
+            f"NumPy cannot be imported; install it by: pip install -r {HERE.name}/requirements.txt")
     try:
         import mitsuba
     except ImportError as error:
@@ -438,10 +441,6 @@ def parser():
 def main():
     options = parser().parse_args()
     try:
-        if np is None:
-            raise Failure(
-                f"NumPy cannot be imported; install it by: "
-                f"pip install -r {HERE.name}/requirements.txt")
         return options.run(options)
     except Failure as failure:
         print(f"error: {failure}", file=sys.stderr)

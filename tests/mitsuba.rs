@@ -425,6 +425,11 @@ fn techniques_must_find_the_light() {
             "<integrator type=\"volpath\">: without media",
         ),
         (
+            r#"<integrator type="volpath"/><emitter type="point"/>
+            <shape type="sphere"><bsdf type="mask"><bsdf type="diffuse"/></bsdf></shape>"#,
+            "<integrator type=\"volpath\">: without media",
+        ),
+        (
             r#"<integrator type="volpath"><boolean name="hide_emitters" value="true"/></integrator>
             <shape type="sphere"><bsdf type="thindielectric"/></shape>"#,
             "<integrator type=\"volpath\">: without media",

@@ -16,11 +16,11 @@ pub struct Integrator {
     pub rr_depth: u32,
     /// Whether the camera sees through what emits light.
     pub hide_emitters: bool,
-    /// Whether it then does not see what is around through surfaces that light passes straight through either: it does in `direct`.
-    pub hides_behind_passages: bool,
+    /// Whether it then sees what is around through surfaces that light passes straight through, as in `direct`.
+    pub hides_in_front_alone: bool,
     /// How light is found.
     pub techniques: Techniques,
-    /// Whether surfaces count that light passes straight through: not in `volpath`, which is the same as `path` otherwise where
+    /// Whether surfaces count that light passes straight through, and lights that are drawn behind them are hidden: not in `volpath`, which is the same as `path` otherwise where
     /// there are no media.
     pub counts_passages: bool,
 }
@@ -43,7 +43,7 @@ impl Default for Integrator {
             max_depth: None,
             rr_depth: 5,
             hide_emitters: false,
-            hides_behind_passages: true,
+            hides_in_front_alone: false,
             techniques: Techniques::Both,
             counts_passages: true,
         }
@@ -73,11 +73,12 @@ impl Integrator {
             };
             shape.bsdf.any(&is)
         };
-        let heeded = self.max_depth.is_some() || self.hide_emitters;
+        let heeded =
+            self.max_depth.is_some() || self.hide_emitters || emitters.iter().any(is_point);
         if !self.counts_passages && heeded && shapes.iter().any(passes) {
             return Err(place.error(
-                "without media volpath is path, but for passages through null, mask and thindielectric, which it neither counts nor \
-                 takes for surfaces that emitters are seen by; use path",
+                "without media volpath is path, but for passages through null, mask and thindielectric: it does not count them, draws \
+                 lights through them, and hides emitters behind them; use path",
             ));
         }
         match self.techniques {
@@ -130,7 +131,7 @@ pub(super) fn describe(mut query: Query<'_>) -> Result<Integrator, SceneError> {
             Integrator {
                 max_depth: Some(2),
                 hide_emitters,
-                hides_behind_passages: false,
+                hides_in_front_alone: true,
                 techniques,
                 ..Integrator::default()
             }

@@ -243,10 +243,10 @@ impl Plan<'_> {
         } = self.description;
         let mut paths = Paths::default().roulette_from(integrator.rr_depth);
         if integrator.hide_emitters {
-            paths = if integrator.hides_behind_passages {
-                paths.hiding_lights()
-            } else {
+            paths = if integrator.hides_in_front_alone {
                 paths.hiding_lights_in_front()
+            } else {
+                paths.hiding_lights()
             };
         }
         match integrator.max_depth {

@@ -146,10 +146,10 @@ pub struct Scattered {
 }
 
 impl Scattered {
-    /// Whether light passes as if there were no surface, of the given normal, that is seen from the direction `out`: through a hole, or through
+    /// Whether light passes as if there were no surface, of the given true normal, that is seen from the direction `out`: through a hole, or through
     /// thin glass. What is mirrored at a grazing angle is nearly as straight, but stays on its side.
     #[inline]
-    pub(in crate::path) fn is_straight(&self, normal: Vec3A, out: Vec3A) -> bool {
+    pub(in crate::path) fn passes(&self, normal: Vec3A, out: Vec3A) -> bool {
         self.density == f32::INFINITY
             && self.eta == 1.0
             && self.direction.dot(out) < -1.0 + 1e-6

@@ -189,7 +189,7 @@ impl Packet {
     /// What [`Paths::radiance`] gives for each of the points, times the weight that its start has; `starts` tells where their paths
     /// begin. Paths that are to be reused are kept by `keeper`, and have no values yet.
     ///
-    /// View and points are behind pointers, and it is not inlined, so that the loop is compiled once, with this crate.
+    /// View and points are behind pointers, and it is not inlined, so that the loop is compiled with this crate, for no view and no kind of points.
     #[inline(never)]
     pub(in crate::path) fn radiance(
         &self,

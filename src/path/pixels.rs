@@ -40,7 +40,7 @@ pub struct Share<P> {
     pub count: u64,
 }
 
-/// The same of points of any kind. What follows from here on is compiled once for all of them.
+/// The same of points of any kind: what takes these is compiled for a view, not for each kind of points.
 pub(in crate::path) type Given<'a> = Share<&'a dyn PointSet>;
 
 impl<P: PointSet> Share<P> {

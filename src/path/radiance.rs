@@ -18,8 +18,8 @@ pub struct Paths {
     pub(in crate::path) longest: u32,
     pub(in crate::path) roulette: Rule,
     pub(in crate::path) hides_lights: bool,
-    /// Whether what is around is hidden through holes and thin glass too.
-    pub(in crate::path) hides_behind_passages: bool,
+    /// Whether, of what is around, only that is hidden which nothing is in front of: not what is seen through holes and thin glass.
+    pub(in crate::path) hides_in_front_alone: bool,
     pub(in crate::path) reused_by: u32,
 }
 
@@ -29,7 +29,7 @@ impl Default for Paths {
             longest: u32::MAX,
             roulette: Rule::of_throughput(5),
             hides_lights: false,
-            hides_behind_passages: false,
+            hides_in_front_alone: false,
             reused_by: 1,
         }
     }
@@ -63,7 +63,6 @@ impl Paths {
     /// sees nothing where it would see what is around the scene, be it through holes and thin glass. Shapes that shine are seen through these.
     pub fn hiding_lights(mut self) -> Self {
         self.hides_lights = true;
-        self.hides_behind_passages = true;
         self
     }
 
@@ -71,7 +70,7 @@ impl Paths {
     #[cfg(feature = "mitsuba")]
     pub(crate) fn hiding_lights_in_front(mut self) -> Self {
         self.hides_lights = true;
-        self.hides_behind_passages = false;
+        self.hides_in_front_alone = true;
         self
     }
 
@@ -200,7 +199,7 @@ impl Paths {
             let Some(next) = bsdf.sample(surface, out, u) else {
                 break;
             };
-            hidden = hidden && self.hides_behind_passages && next.is_straight(surface.normal, out);
+            hidden = hidden && !self.hides_in_front_alone && next.passes(surface.normal, out);
             throughput *= next.weight;
             eta *= next.eta;
             let carried = throughput.max_element() * (eta * eta);

@@ -68,7 +68,7 @@ impl FarPlane {
     }
 
     /// Whether any point of a box is beyond it.
-    #[cfg(feature = "mitsuba")]
+    #[cfg(any(test, feature = "mitsuba"))]
     pub(crate) fn cuts(&self, [low, high]: [Vec3A; 2]) -> bool {
         self.hides(Vec3A::select(self.normal.cmpgt(Vec3A::ZERO), high, low))
     }
@@ -76,7 +76,7 @@ impl FarPlane {
 
 impl<C> Clipped<C> {
     /// What `camera` sees before the plane; everything without one, for programs that do not know before they read a file. Camera and plane must be of one
-    /// [`Projection`]: all rays go towards the plane.
+    /// [`Projection`], or no ray come back through the plane: what a ray meets before it, after something beyond it, is not seen either.
     pub fn new(camera: C, far: Option<FarPlane>) -> Self {
         Self { camera, far }
     }

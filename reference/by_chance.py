@@ -249,10 +249,10 @@ class Chance:
         return f'<emitter type="{kind}">{content}{weight}</emitter>'
 
     def area(self, weight: str) -> str:
-        # Mitsuba 3.9.1 has the density of textured spheres wrong, and that of all that have a `to_uv`; interpolated normals are taken for true ones.
+        # Mitsuba 3.9.1 has the density of textured spheres and cylinders wrong, and that of all that have a `to_uv`; interpolated normals are taken for true ones.
         textured = self.has(0.2)
         radiance = self.texture("radiance", moved=0) if textured else self.color("radiance", 1, 8)
-        kinds = ("rectangle", "disk", "cylinder") if textured else ("rectangle", "sphere", "disk", "cylinder", "cube", "ply", "obj")
+        kinds = ("rectangle", "disk") if textured else ("rectangle", "sphere", "disk", "cylinder", "cube", "ply", "obj")
         kind = self.one(*kinds)
         self.has_round_areas |= kind in ("sphere", "disk", "cylinder")
         file = {"ply": "ball.ply", "obj": "sheet.obj"}.get(kind)
